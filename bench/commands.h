@@ -1,0 +1,19 @@
+// The commands of kdbench.
+#pragma once
+
+#include <functional>
+
+#include <CLI/CLI.hpp>
+
+namespace kd::bench {
+
+constexpr const char* kKdbench = "kdbench";
+
+struct Command {
+  CLI::App* subcommand = nullptr;
+  std::function<int()> run;
+};
+
+Command trace_command(CLI::App& app);
+
+}  // namespace kd::bench

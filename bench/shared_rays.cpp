@@ -1,0 +1,172 @@
+#include "shared_rays.h"
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+
+#include <fmt/format.h>
+
+namespace kd::bench {
+
+namespace {
+
+/// The plain scaling: the comparison's definition, which the library's overflow-proof one would not match to the last
+/// bit.
+Vec3d unit(Vec3d a) {
+  const double l = length(a);
+  return l > 0 ? Vec3d{a.x / l, a.y / l, a.z / l} : a;
+}
+
+/// Every second bit of a Morton code.
+uint32_t even_bits(uint64_t code) {
+  uint32_t value = 0;
+  for (int bit = 0; bit < 32; ++bit) value |= static_cast<uint32_t>(code >> (2 * bit) & 1) << bit;
+  return value;
+}
+
+/// A permutation of 32-bit words that scatters them (PCG's output function; Jarzynski and Olano, JCGT 2020).
+uint32_t scatter(uint32_t v) {
+  const uint32_t state = v * 747796405u + 2891336453u;
+  const uint32_t word = ((state >> ((state >> 28) + 4)) ^ state) * 277803737u;
+  return (word >> 22) ^ word;
+}
+
+double unit_interval(uint32_t word) { return (word >> 8) * (1.0 / 16777216.0); }
+
+render::RayRecord record(Vec3d o, Vec3d d, float t_max) {
+  const Vec3f of = vec_cast<float>(o), df = vec_cast<float>(d);
+  return {of.x, of.y, of.z, 0, df.x, df.y, df.z, t_max};
+}
+
+/// Cosine-distributed about `n`; the frame's first axis is square to the axis on which n is least.
+Vec3d bounce_direction(Vec3d n, uint32_t pixel) {
+  const uint32_t first = scatter(pixel * 2654435761u + 12345u), second = scatter(first + 0x9e3779b9u);
+  const double u1 = unit_interval(first), u2 = unit_interval(second);
+  const double radius = std::sqrt(u1), angle = 6.283185307179586 * u2;
+  const double x = radius * std::cos(angle), y = radius * std::sin(angle), z = std::sqrt(std::fmax(0.0, 1 - u1));
+  const double ax = std::fabs(n.x), ay = std::fabs(n.y), az = std::fabs(n.z);
+  const int least = ax < ay ? (ax < az ? 0 : 2) : (ay < az ? 1 : 2);
+  Vec3d helper{0, 0, 0};
+  helper.set(least, 1);
+  const Vec3d tangent = unit(cross(helper, n)), bitangent = cross(n, tangent);
+  return unit({x * tangent.x + y * bitangent.x + z * n.x, x * tangent.y + y * bitangent.y + z * n.y,
+               x * tangent.z + y * bitangent.z + z * n.z});
+}
+
+/// Source primitive -> the object's triangle; the identity if the object dropped none.
+std::vector<uint32_t> triangle_of_primitive(std::span<const uint32_t> sources, size_t triangles) {
+  std::vector<uint32_t> map;
+  for (uint32_t i = 0; i < triangles; ++i) {
+    const uint32_t primitive = sources.empty() ? i : sources[i];
+    if (primitive >= map.size()) map.resize(primitive + 1, 0xffffffffu);
+    map[primitive] = i;
+  }
+  return map;
+}
+
+class ModelTriangles {
+ public:
+  explicit ModelTriangles(const nkd::ObjectFile& object)
+      : lattice_(object.summary().lattice),
+        geometry_(object.geometry()),
+        map_(triangle_of_primitive(
+            object.source_primitives() ? *object.source_primitives() : std::span<const uint32_t>{},
+            geometry_.triangle_count())) {}
+
+  std::array<Vec3d, 3> corners(int32_t primitive) const {
+    const auto words = static_cast<size_t>(vertex_words(lattice_.bits));
+    const size_t triangle = map_[static_cast<size_t>(primitive)];
+    std::array<Vec3d, 3> c;
+    for (size_t k = 0; k < 3; ++k) {
+      c[k] = lattice_.to_model(
+          unpack_vertex(&geometry_.vertices[geometry_.triangles[3 * triangle + k] * words], lattice_.bits));
+    }
+    return c;
+  }
+
+ private:
+  const Lattice& lattice_;
+  const nkd::Geometry& geometry_;
+  std::vector<uint32_t> map_;
+};
+
+}  // namespace
+
+Result<SharedCamera> read_camera(const std::string& path) {
+  std::ifstream file(path);
+  if (!file) return Error{ErrorClass::missing, path, "cannot open the camera file"};
+  std::vector<double> numbers;
+  for (std::string line; std::getline(file, line);) {
+    std::istringstream words(line.substr(0, line.find('#')));
+    for (std::string word; words >> word;) {
+      char* end = nullptr;
+      const double value = std::strtod(word.c_str(), &end);
+      if (end != word.c_str()) numbers.push_back(value);
+    }
+  }
+  if (numbers.size() < 13) {
+    return Error{ErrorClass::usage, path,
+                 fmt::format("a camera is 13 numbers (position, target, up, vertical fov, light); this file has {}",
+                             numbers.size())};
+  }
+  const auto vec = [&](size_t i) { return Vec3d{numbers[i], numbers[i + 1], numbers[i + 2]}; };
+  return SharedCamera{vec(0), vec(3), vec(6), numbers[9], vec(10)};
+}
+
+PrimaryRays primary_rays(const SharedCamera& camera, uint32_t width, uint32_t height) {
+  PrimaryRays out;
+  const Vec3d forward = unit(camera.target - camera.position);
+  const Vec3d right = unit(cross(forward, camera.up)), up = cross(right, forward);
+  const double half = std::tan(camera.vertical_fov_degrees * 3.14159265358979323846 / 360.0);
+  const double aspect = static_cast<double>(width) / height;
+  const uint64_t side = std::bit_ceil(std::max(width, height));
+  for (uint64_t code = 0; code < side * side; ++code) {
+    const uint32_t x = even_bits(code), y = even_bits(code >> 1);
+    if (x >= width || y >= height) continue;
+    const double sx = ((x + 0.5) / width * 2 - 1) * half * aspect, sy = (1 - (y + 0.5) / height * 2) * half;
+    const Vec3d d{forward.x + sx * right.x + sy * up.x, forward.y + sx * right.y + sy * up.y,
+                  forward.z + sx * right.z + sy * up.z};
+    out.pixels.push_back(y * width + x);
+    out.rays.push_back(record(camera.position, unit(d), 1e30f));
+  }
+  return out;
+}
+
+SecondaryRays secondary_rays(const nkd::ObjectFile& object, const SharedCamera& camera, const PrimaryRays& primary,
+                             std::span<const render::HitRecord> hits) {
+  SecondaryRays out;
+  const ModelTriangles triangles(object);
+  const double lift = 2e-5 * length(object.summary().lattice.extent);
+  for (size_t i = 0; i < hits.size(); ++i) {
+    if (hits[i].primitive < 0) continue;
+    const render::RayRecord& r = primary.rays[i];
+    const Vec3d o{r.ox, r.oy, r.oz}, d{r.dx, r.dy, r.dz};
+    const auto [a, b, c] = triangles.corners(hits[i].primitive);
+    Vec3d n = unit(cross(b - a, c - a));
+    if (dot(d, n) > 0) n = -n;
+    const double slope = dot(d, n);
+    double t = slope != 0 ? dot(a - o, n) / slope : hits[i].t;
+    if (!(std::fabs(t - hits[i].t) < 1e-2 * (1 + std::fabs(hits[i].t)))) t = hits[i].t;
+    const Vec3d p{o.x + t * d.x + lift * n.x, o.y + t * d.y + lift * n.y, o.z + t * d.z + lift * n.z};
+
+    const Vec3d way = camera.light - p;
+    const Vec3d to_light = unit(way);
+    out.facing += dot(to_light, n) > 0;
+    out.shadow.push_back(record(p, to_light, static_cast<float>(length(way) * (1 - 1e-5))));
+    out.diffuse.push_back(record(p, bounce_direction(n, primary.pixels[i]), 1e30f));
+  }
+  return out;
+}
+
+uint64_t ray_hash(std::span<const render::RayRecord> rays) {
+  uint64_t hash = 1469598103934665603ull;
+  for (const render::RayRecord& ray : rays) {
+    for (uint32_t word : std::bit_cast<std::array<uint32_t, 8>>(ray)) hash = (hash ^ word) * 1099511628211ull;
+  }
+  return hash;
+}
+
+}  // namespace kd::bench

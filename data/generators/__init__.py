@@ -1,0 +1,1 @@
+"""Generators of the demo meshes and scenes; run through data/generate.py."""

@@ -1,0 +1,27 @@
+// Clipping a triangle to a cell, for perfect splits: the lattice box of what of the triangle lies in the cell.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "core/box.h"
+#include "core/vec.h"
+
+namespace kd::build {
+
+using LatticeTriangle = std::array<Vec3u, 3>;
+
+inline Box3u bounds(const LatticeTriangle& t) {
+  Box3u box;
+  for (Vec3u p : t) box.extend(p);
+  return box;
+}
+
+/// The smallest lattice box around the triangle's part in the closed cell, or one a step larger: never too small.
+/// Nothing if the triangle has no point in the cell.
+///
+/// Sutherland and Hodgman's clipping, in double, against the cell widened by 2^-20 steps. Rounding moves a computed
+/// point by less than 2^-26 steps, so the widened polygon contains the true one.
+std::optional<Box3u> clipped_bounds(const LatticeTriangle& triangle, const Box3u& cell);
+
+}  // namespace kd::build

@@ -1,0 +1,48 @@
+// Events of the plane sweep: where along an axis a triangle's box begins, ends, or lies flat.
+//
+// One 64-bit key each, plane << 34 | kind << 32 | triangle, so that sorting keys sorts by plane, and at a plane in the
+// order the sweep needs: ends, then flat ones, then starts (Wald and Havran 2006, section 4.2). The other order loses
+// triangles that lie in a split plane.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "core/box.h"
+
+namespace kd::build {
+
+enum class EventKind : uint8_t { end = 0, flat = 1, start = 2 };
+
+using Event = uint64_t;
+using EventList = std::vector<Event>;
+
+constexpr Event make_event(uint32_t plane, EventKind kind, uint32_t triangle) {
+  return uint64_t{plane} << 34 | uint64_t{static_cast<uint8_t>(kind)} << 32 | triangle;
+}
+constexpr uint32_t plane_of(Event e) { return static_cast<uint32_t>(e >> 34); }
+constexpr EventKind kind_of(Event e) { return static_cast<EventKind>(e >> 32 & 3); }
+constexpr uint32_t triangle_of(Event e) { return static_cast<uint32_t>(e); }
+/// The same event of a triangle with another number.
+constexpr Event renumbered(Event e, uint32_t triangle) { return (e >> 32) << 32 | triangle; }
+
+inline void append_events(const Box3u& box, int axis, uint32_t triangle, EventList& events) {
+  const uint32_t lo = box.lo[axis], hi = box.hi[axis];
+  if (lo == hi) {
+    events.push_back(make_event(lo, EventKind::flat, triangle));
+  } else {
+    events.push_back(make_event(lo, EventKind::start, triangle));
+    events.push_back(make_event(hi, EventKind::end, triangle));
+  }
+}
+
+/// Sorts `fresh` and merges it into the sorted `events`.
+inline void merge_events(EventList& events, EventList& fresh) {
+  std::sort(fresh.begin(), fresh.end());
+  const auto middle = static_cast<std::ptrdiff_t>(events.size());
+  events.insert(events.end(), fresh.begin(), fresh.end());
+  std::inplace_merge(events.begin(), events.begin() + middle, events.end());
+}
+
+}  // namespace kd::build

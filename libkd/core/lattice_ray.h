@@ -1,0 +1,95 @@
+// A ray inside one object's lattice, snapped once and then the same for every triangle and plane of the object.
+//
+// Let k be the axis of the direction's largest component. The ray is written as a function of the distance s along k,
+//
+//   p(s) = origin + s * direction,   direction[k] = +-1,   t = t_base + s * t_scale,
+//
+// and both vectors are fixed-point: the origin lies on the grid of 2^(B-24) lattice steps (2^-24 of the cube, whatever
+// B is) and the direction on that of 2^-24. Two things follow, and all that is exact rests on them:
+//   - v - origin is exact in float32 for every lattice point v (24 bits, whatever their difference), and
+//   - the coordinates of v sheared along the ray, (v - origin) - direction * s(v), are exact in double (48 bits).
+// What snapping costs: the origin's plane along k is chosen on the grid and the ray evaluated there in double, so the
+// ray moves only sideways, by at most half a grid step an axis at the origin (2^-25 of the cube) and, from the rounding
+// of the direction, as much again at the far side of the cube.
+#pragma once
+
+#include "core/arithmetic.h"
+#include "core/lattice.h"
+#include "core/ray.h"
+#include "core/vec.h"
+
+namespace kd {
+
+struct LatticeRay {
+  Vec3f origin;     // lattice steps, within one grid step of the cube
+  Vec3f direction;  // lattice steps per unit of s; the component along `axis` is 1 or -1
+  Vec3f inverse;    // 1 / direction, rounded; kParallel where a component is 0
+  int axis = 0;
+  float s_min = 0;  // the ray's own interval, >= 0
+  float s_max = 0;
+  float s_exit = 0;  // where the ray has left the cube, rounded up
+  double t_base = 0;
+  double t_scale = 1;
+
+  KD_HD KD_INLINE double t_at(double s) const { return t_base + s * t_scale; }
+};
+
+/// Stands for 1/0. A ray parallel to a plane is thereby at distance +-2^58 or more from it unless it lies in it, and
+/// then at distance 0: it counts as just past the plane, on the side of higher coordinates, which is also where the tie
+/// rule of the triangle test moves it (`core/triangle.h`).
+constexpr float kParallel = 1152921504606846976.0f;  // 2^60
+
+/// Takes a ray that is already in lattice space onto the grid. `o` and `d` are in lattice steps; they may be anything,
+/// far away and NaN included. False: the ray has no point in the cube within [t_min, t_max], or is not a ray.
+KD_HD inline bool snap_ray(Vec3d o, Vec3d d, double t_min, double t_max, int bits, LatticeRay& ray) {
+  if (!is_finite(o) || !is_finite(d)) return false;
+  const double ax = std::fabs(d.x), ay = std::fabs(d.y), az = std::fabs(d.z);
+  const int k = ax >= ay && ax >= az ? 0 : ay >= az ? 1 : 2;
+  const double speed = max_of(ax, ay, az);
+  if (!(speed > 0)) return false;
+
+  const double grid = 1.0 / static_cast<double>(1u << (kMaxLatticeBits - bits));
+  const double top = lattice_max(bits);
+
+  // Clip to the cube, widened on every side by more than snapping can move the ray: one that touches the cube after it
+  // is never lost here, and s_exit is never too early.
+  const double margin = 2 * grid;
+  double t_enter = t_min, t_exit = t_max;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double oa = o[axis], da = d[axis];
+    if (da != 0) {
+      const double t0 = (-margin - oa) / da, t1 = (top + margin - oa) / da;
+      t_enter = max_of(t_enter, min_of(t0, t1));
+      t_exit = min_of(t_exit, max_of(t0, t1));
+    } else if (oa < -margin || oa > top + margin) {
+      return false;
+    }
+  }
+  if (!(t_enter <= t_exit)) return false;
+
+  // The origin: on the last grid plane across k at or before the entry, inside the cube.
+  const double ok = o[k], dk = d[k];
+  const double entry = (ok + t_enter * dk) / grid;
+  const double plane = min_of(max_of((dk > 0 ? std::floor(entry) : std::ceil(entry)) * grid, 0.0), top);
+  const double t_base = (plane - ok) / dk;
+  const auto place = [&](double oa, double da, bool along) {
+    const double p = std::rint((oa + t_base * da) / grid) * grid;
+    return static_cast<float>(along ? plane : min_of(max_of(p, -grid), top + grid));
+  };
+  ray.origin = {place(o.x, d.x, k == 0), place(o.y, d.y, k == 1), place(o.z, d.z, k == 2)};
+
+  const auto turn = [&](double da) { return static_cast<float>(std::rint(da / speed * 0x1p24) * 0x1p-24); };
+  ray.direction = {turn(d.x), turn(d.y), turn(d.z)};
+  const auto invert = [](float c) { return c == 0 ? kParallel : 1.0f / c; };
+  ray.inverse = {invert(ray.direction.x), invert(ray.direction.y), invert(ray.direction.z)};
+
+  ray.axis = k;
+  ray.t_base = t_base;
+  ray.t_scale = 1 / speed;
+  ray.s_min = static_cast<float>(max_of((t_min - t_base) * speed, 0.0));
+  ray.s_max = static_cast<float>(min_of((t_max - t_base) * speed, 1e30));
+  ray.s_exit = static_cast<float>((t_exit - t_base) * speed) * (1 + 0x1p-20f);
+  return ray.s_exit >= 0;
+}
+
+}  // namespace kd

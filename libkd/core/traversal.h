@@ -1,0 +1,112 @@
+// Front-to-back traversal of one object's kd-tree that cannot skip a cell it touches.
+//
+// A hit counts wherever on the ray it lies, not only inside the leaf's own interval: a triangle in a split plane, or
+// one reached through a cell a few ulps thin, is found whichever of its leaves comes first. Traversal ends when the
+// nearest hit so far lies before the next cell's entry.
+//
+// Why no cell is lost. With e = 2^-24, plane - origin is exact, so the computed distance s of a plane obeys
+// |s - S| <= 2.1 e |S| for the exact distance S. The bounds of the current cell are kept with a margin: the exit at
+// least S_exit (1 + 5e), the entry at most S_entry (1 - 5e). Therefore
+//   s > exit  means S > S_exit:   the far child is certainly beyond the cell;
+//   s < entry means S < S_entry:  the near child is certainly behind it;
+// and otherwise the child is visited. The margins are put in when a bound is stored, once a level, not at each
+// comparison. They also cover the rounding of a hit's distance, so "nearest hit before the entry" is never said too
+// early.
+#pragma once
+
+#include "core/arithmetic.h"
+#include "core/lattice_ray.h"
+#include "core/object_view.h"
+#include "core/triangle.h"
+
+namespace kd {
+
+constexpr uint32_t kNoTriangle = 0xffffffffu;
+
+enum class RayMode { closest, any };
+
+/// What traversal counts when asked to; `NoCounter` compiles to nothing.
+struct NoCounter {
+  KD_HD KD_INLINE void node() {}
+  KD_HD KD_INLINE void leaf() {}
+  KD_HD KD_INLINE void triangle() {}
+};
+
+namespace detail {
+
+constexpr float kExitMargin = 1 + 0x1p-21f;   // 8e: (1 - 2.1e)(1 + 8e) > 1 + 5e
+constexpr float kEntryMargin = 1 - 0x1p-20f;  // 16e, of an exit bound that is at most S (1 + 11e)
+
+struct StackEntry {
+  uint32_t node;
+  float s_exit;
+};
+
+}  // namespace detail
+
+/// The triangle the ray meets first within [s_min, min(s_max, s_limit)], or with RayMode::any some triangle it meets
+/// there. Returns kNoTriangle if there is none. Of two triangles at the same distance (as float32) the lower index
+/// wins, so the answer depends on no order of visits. `excluded`: a triangle that is never met (a shadow ray's own), or
+/// kNoTriangle.
+template <RayMode mode, class Counter>
+KD_HD inline uint32_t traverse(const ObjectView& object, const LatticeRay& ray, float s_limit, uint32_t excluded,
+                               Counter& counter) {
+  using namespace detail;
+  StackEntry stack[kMaxDepth];
+  int depth = 0;
+  uint32_t best = kNoTriangle;
+  float s_best = min_of(ray.s_max, s_limit);
+
+  uint32_t index = 0;
+  float s_entry = ray.s_min * kEntryMargin;
+  float s_exit = min_of(ray.s_exit, s_best) * kExitMargin;
+
+  while (true) {
+    Node node = object.nodes[index];
+    while (!is_leaf(node)) {
+      counter.node();
+      const int axis = split_axis(node);
+      const float inverse = ray.inverse[axis];
+      const float s = (split_plane(node) - ray.origin[axis]) * inverse;
+      const uint32_t first = first_child(node);
+      const uint32_t near = first + (inverse < 0 ? 1u : 0u);
+      const uint32_t far = first + (inverse < 0 ? 0u : 1u);
+      if (s > s_exit) {
+        index = near;
+      } else if (s < s_entry) {
+        index = far;
+      } else {
+        stack[depth++] = {far, s_exit};
+        index = near;
+        s_exit = min_of(s_exit, s * kExitMargin);
+      }
+      node = object.nodes[index];
+    }
+
+    counter.leaf();
+    const uint32_t begin = first_reference(node), end = begin + reference_count(node);
+    for (uint32_t r = begin; r < end; ++r) {
+      const uint32_t candidate = object.references[r];
+      counter.triangle();
+      TriangleHit hit;
+      if (candidate == excluded || !intersect_triangle(ray, object.triangles[candidate], s_best, hit)) continue;
+      const float s = static_cast<float>(hit.s);
+      if (s < ray.s_min || s > s_best) continue;
+      if constexpr (mode == RayMode::any) return candidate;
+      if (s < s_best || candidate < best) {
+        s_best = s;
+        best = candidate;
+      }
+    }
+
+    if (depth == 0) return best;
+    // The next cell begins where this one ended. Beyond the nearest hit there is nothing left to find.
+    s_entry = s_exit * kEntryMargin;
+    if (s_best < s_entry) return best;
+    --depth;
+    index = stack[depth].node;
+    s_exit = stack[depth].s_exit;
+  }
+}
+
+}  // namespace kd

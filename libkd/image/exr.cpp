@@ -1,0 +1,100 @@
+#include "image/exr.h"
+
+#include <cerrno>
+#include <cstring>
+#include <exception>
+#include <fstream>
+
+#include <ImfChannelList.h>
+#include <ImfFloatAttribute.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfOutputFile.h>
+#include <ImfStdIO.h>
+#include <ImfStringAttribute.h>
+#include <fmt/format.h>
+
+#include "sys/atomic_file.h"
+
+namespace kd::image {
+
+namespace {
+
+bool buffers_fit(const Film& film) {
+  const size_t pixels = size_t{film.width} * film.height;
+  if (pixels == 0 || film.colour.size() != 4 * pixels) return false;
+  for (const AovBuffer& buffer : film.aovs) {
+    if (buffer.words.size() != static_cast<size_t>(aov_row(buffer.aov).components) * pixels) return false;
+  }
+  return true;
+}
+
+/// One channel of an interleaved buffer, in the header and in the frame buffer. A Slice's base is not const because
+/// slices serve reading too; writing a file only reads from it.
+void add_channel(Imf::Header& header, Imf::FrameBuffer& frame, std::string_view name, Imf::PixelType type,
+                 const void* first, int components, uint32_t width) {
+  const size_t pixel = sizeof(float) * static_cast<size_t>(components);
+  header.channels().insert(std::string(name), Imf::Channel(type));
+  frame.insert(std::string(name),
+               Imf::Slice(type, const_cast<char*>(static_cast<const char*>(first)), pixel, pixel * width));
+}
+
+void add_channels(Imf::Header& header, Imf::FrameBuffer& frame, const Film& film) {
+  constexpr std::array<std::string_view, 4> kColour{"R", "G", "B", "A"};
+  for (size_t c = 0; c < kColour.size(); ++c) {
+    add_channel(header, frame, kColour[c], Imf::FLOAT, film.colour.data() + c, 4, film.width);
+  }
+  for (const AovBuffer& buffer : film.aovs) {
+    const AovRow& row = aov_row(buffer.aov);
+    const Imf::PixelType type = row.type == ChannelType::float32 ? Imf::FLOAT : Imf::UINT;
+    for (size_t c = 0; c < static_cast<size_t>(row.components); ++c) {
+      add_channel(header, frame, row.channels[c], type, buffer.words.data() + c, row.components, film.width);
+    }
+  }
+}
+
+void add_attributes(Imf::Header& file, const ExrHeader& header) {
+  if (header.gamma) file.insert("gamma", Imf::FloatAttribute(static_cast<float>(*header.gamma)));
+  if (!header.software.empty()) file.insert("software", Imf::StringAttribute(header.software));
+  for (const auto& [name, value] : header.text) file.insert(name, Imf::StringAttribute(value));
+}
+
+/// Throws what OpenEXR throws. False: the file system would not take it all, errno says why.
+bool write_film(const std::string& path, const Film& film, const ExrHeader& header) {
+  Imf::Header file_header(static_cast<int>(film.width), static_cast<int>(film.height));
+  file_header.compression() = Imf::ZIP_COMPRESSION;
+  Imf::FrameBuffer frame;
+  add_channels(file_header, frame, film);
+  add_attributes(file_header, header);
+
+  // OutputFile's destructor writes the line table and swallows what goes wrong then; the stream remembers it.
+  std::ofstream stream(path, std::ios::binary);
+  if (!stream) return false;
+  {
+    Imf::StdOFStream exr_stream(stream, path.c_str());
+    Imf::OutputFile file(exr_stream, file_header);
+    file.setFrameBuffer(frame);
+    file.writePixels(static_cast<int>(film.height));
+  }
+  stream.close();
+  return !stream.fail();
+}
+
+}  // namespace
+
+Result<void> write_exr(const std::string& path, const Film& film, const ExrHeader& header) {
+  if (!buffers_fit(film)) return Error{ErrorClass::output, path, "cannot write: the film's buffers lack its size"};
+  auto file = AtomicFile::create(path);
+  if (!file) return file.error();
+  try {
+    errno = 0;
+    if (!write_film(file->temporary_path(), film, header)) {
+      return Error{ErrorClass::output, path, fmt::format("cannot write: {}", std::strerror(errno))};
+    }
+  } catch (const std::exception& e) {
+    return Error{ErrorClass::output, path, fmt::format("cannot write: {}", e.what())};
+  }
+  return file->commit();
+}
+
+}  // namespace kd::image

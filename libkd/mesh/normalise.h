@@ -1,0 +1,30 @@
+// Normalising: a mesh's bounding box becomes the unit cube, its vertices points of the lattice.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/lattice.h"
+#include "mesh/mesh.h"
+
+namespace kd::mesh {
+
+/// A mesh on the lattice: what the tree is built over. Triangles keep the order of the source; vertices stand in order
+/// of first use, each lattice point once.
+struct LatticeMesh {
+  Lattice lattice;
+  std::vector<Vec3u> vertices;                     // lattice space
+  std::vector<std::array<uint32_t, 3>> triangles;  // indices into vertices
+  std::vector<uint32_t> kept;                      // per triangle: its number in the mesh that was normalised
+  double max_displacement = 0;                     // model units: the largest distance a vertex moved
+  double rms_displacement = 0;                     // model units, over the vertices in use
+  uint64_t welded_vertices = 0;                    // distinct positions that share a lattice point with an earlier one
+  uint64_t collapsed_triangles = 0;     // without area on the lattice: no ray can meet them, so they are dropped
+  uint32_t first_collapsed = kNoIndex;  // source primitive of the first of them
+};
+
+/// `mesh` is clean: finite, with at least one triangle. Its bounding box may be flat along one axis or more.
+LatticeMesh normalise(const Mesh& mesh, int bits);
+
+}  // namespace kd::mesh

@@ -1,0 +1,188 @@
+// OBJ: faces, groups and materials through tinyobjloader's callbacks, which give the faces in file order and unaltered
+// (its other interface leaves out faces with bad indices and may lose corners of polygons). The v and vn lines are read
+// here: tinyobjloader takes what is no number, "nan" included, for 0, and rounds decimals up to a few ulps off.
+#include <algorithm>
+#include <limits>
+#include <set>
+#include <sstream>
+
+#include <fmt/format.h>
+
+#include "mesh/formats.h"
+#include "mesh/mesh_builder.h"
+#include "mesh/read_mtl.h"
+#include "mesh/text.h"
+
+namespace kd::mesh {
+namespace {
+
+/// Positions and normals in file order, as tinyobjloader counts them.
+struct Vertices {
+  std::vector<Vec3d> positions;
+  std::vector<Vec3d> normals;
+};
+
+/// Whether a run of digits is longer than any index; tinyobjloader would take it modulo 2^32.
+bool has_long_index(std::string_view corner) {
+  size_t digits = 0;
+  for (const char c : corner) {
+    digits = c >= '0' && c <= '9' ? digits + 1 : 0;
+    if (digits > 9) return true;
+  }
+  return false;
+}
+
+/// Also looks at the f lines, for indices that tinyobjloader cannot hold.
+Result<Vertices> read_vertices(std::string_view text, const std::string& path) {
+  Vertices vertices;
+  Tokens tokens(text);
+  const auto failed = [&](const std::string& what) {
+    return Error{ErrorClass::mesh, fmt::format("{}:{}", path, tokens.line()), what + "; export the mesh again"};
+  };
+  do {
+    const std::string_view keyword = tokens.next_in_line();
+    if (keyword == "f") {
+      for (std::string_view corner = tokens.next_in_line(); !corner.empty(); corner = tokens.next_in_line()) {
+        if (has_long_index(corner)) return failed(fmt::format("'{}' is out of range", corner.substr(0, 40)));
+      }
+    }
+    if (keyword != "v" && keyword != "vn") continue;
+    Vec3d p;
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::string_view token = tokens.next_in_line();
+      const auto number = parse_number(token);
+      if (!number) {
+        return failed(token.empty() ? fmt::format("'{}' needs three numbers", keyword)
+                                    : fmt::format("'{}' is not a number", token.substr(0, 40)));
+      }
+      p.set(axis, *number);
+    }
+    (keyword == "v" ? vertices.positions : vertices.normals).push_back(p);
+  } while (tokens.next_line());
+  return vertices;
+}
+
+/// The line of the `count`-th face, from 0.
+uint64_t face_line(std::string_view text, uint64_t count) {
+  Tokens tokens(text);
+  do {
+    if (tokens.next_in_line() == "f" && !tokens.next_in_line().empty() && count-- == 0) return tokens.line();
+  } while (tokens.next_line());
+  return tokens.line();
+}
+
+/// What tinyobjloader's callbacks fill.
+struct Reading {
+  explicit Reading(MtlReader reader) : materials(std::move(reader)) {}
+
+  MeshBuilder builder;
+  std::vector<uint32_t> normal_of;  // per vn line: the index in the mesh's normals
+  MtlReader materials;
+  uint64_t faces = 0;  // lines seen so far, for indices that count back from here
+  int64_t positions = 0;
+  int64_t normals = 0;
+  int material = -1;
+  std::set<std::string> undefined;  // names of materials
+  bool uses_default = false;
+  std::string fault;  // of face `faces`; the rest is not read
+  std::vector<MeshBuilder::Corner> corners;
+};
+
+constexpr uint16_t kDefaultMaterial = std::numeric_limits<uint16_t>::max();
+
+/// An OBJ index, from 1 or counting back from the last, as one from 0; -1 or less, or too large, if out of range.
+int64_t from_zero(int index, int64_t count) { return index > 0 ? int64_t{index} - 1 : count + index; }
+
+void take_face(void* user, tinyobj::index_t* indices, int count) {
+  Reading& r = *static_cast<Reading*>(user);
+  if (!r.fault.empty()) return;
+  r.corners.clear();
+  for (const tinyobj::index_t& index : std::span(indices, static_cast<size_t>(count))) {
+    MeshBuilder::Corner corner;
+    const auto all = static_cast<int64_t>(r.builder.mesh.positions.size());
+    corner.position = from_zero(index.vertex_index, r.positions);
+    if (index.vertex_index == 0 || corner.position < 0 || corner.position >= all) {
+      r.fault = fmt::format("face {} (from 0) uses vertex {}, but the file has {}; export the mesh again", r.faces,
+                            index.vertex_index, all);
+      return;
+    }
+    if (index.normal_index != 0) {
+      const int64_t normal = from_zero(index.normal_index, r.normals);
+      if (normal < 0 || normal >= static_cast<int64_t>(r.normal_of.size())) {
+        r.fault = fmt::format("face {} (from 0) uses normal {}, but the file has {}; export the mesh again", r.faces,
+                              index.normal_index, r.normal_of.size());
+        return;
+      }
+      corner.normal = r.normal_of[static_cast<size_t>(normal)];
+    }
+    r.corners.push_back(corner);
+  }
+  const bool is_default = r.material < 0;
+  r.uses_default |= is_default;
+  const auto added = r.builder.add_face(r.corners, is_default ? kDefaultMaterial : static_cast<uint16_t>(r.material));
+  if (!added) r.fault = added.error().what;
+  ++r.faces;
+}
+
+void take_material(void* user, const char* name, int) {
+  Reading& r = *static_cast<Reading*>(user);
+  r.material = r.materials.find(name);
+  if (r.material < 0) r.undefined.insert(name);
+}
+
+/// Moves the materials into the mesh, with the default one behind them if some face needs it.
+Result<void> place_materials(Reading& r, const std::string& path) {
+  Mesh& mesh = r.builder.mesh;
+  mesh.materials = std::move(r.materials.materials);
+  mesh.material_names = std::move(r.materials.names);
+  mesh.warnings = std::move(r.materials.warnings);
+  if (mesh.materials.size() >= kDefaultMaterial) {
+    return Error{ErrorClass::mesh, path,
+                 fmt::format("{} materials, but at most {} can be kept; merge some", mesh.materials.size(),
+                             kDefaultMaterial - 1)};
+  }
+  if (!r.undefined.empty()) {
+    mesh.warnings.push_back(
+        fmt::format("{} material(s) not defined in any MTL file ('{}' and so on); their faces get the "
+                    "default material",
+                    r.undefined.size(), r.undefined.begin()->substr(0, 40)));
+  }
+  const bool names_none = mesh.materials.empty() && mesh.warnings.empty();
+  if (names_none || !r.uses_default) return {};
+  const auto index = static_cast<uint16_t>(mesh.materials.size());
+  std::replace(mesh.material_ids.begin(), mesh.material_ids.end(), kDefaultMaterial, index);
+  mesh.materials.emplace_back();
+  mesh.material_names.emplace_back("default");
+  return {};
+}
+
+}  // namespace
+
+Result<Mesh> read_obj(Bytes bytes, const std::string& path, const ReadOptions& options) {
+  const std::string_view text = text_of(bytes);
+  Result<Vertices> vertices = read_vertices(text, path);
+  if (!vertices) return vertices.error();
+
+  Reading reading(MtlReader(path, options.ambient_from_diffuse));
+  reading.builder.mesh.positions = std::move(vertices->positions);
+  for (const Vec3d& normal : vertices->normals) {
+    reading.normal_of.push_back(add_normal(reading.builder.mesh, normal));
+  }
+  tinyobj::callback_t callbacks;
+  using Real = tinyobj::real_t;
+  callbacks.vertex_cb = [](void* user, Real, Real, Real, Real) { ++static_cast<Reading*>(user)->positions; };
+  callbacks.normal_cb = [](void* user, Real, Real, Real) { ++static_cast<Reading*>(user)->normals; };
+  callbacks.index_cb = take_face;
+  callbacks.usemtl_cb = take_material;
+  std::istringstream in{std::string(text)};
+  std::string warning, error;
+  const bool parsed = tinyobj::LoadObjWithCallback(in, callbacks, &reading, &reading.materials, &warning, &error);
+  if (!reading.fault.empty()) {
+    return Error{ErrorClass::mesh, fmt::format("{}:{}", path, face_line(text, reading.faces)), reading.fault};
+  }
+  if (!parsed) return Error{ErrorClass::mesh, path, fmt::format("tinyobjloader: {}", error)};
+  if (const auto placed = place_materials(reading, path); !placed) return placed.error();
+  return std::move(reading.builder).finish(path);
+}
+
+}  // namespace kd::mesh

@@ -1,0 +1,184 @@
+#include "render/cpu_backend.h"
+
+#include <atomic>
+
+#include <fmt/format.h>
+
+#include "render/pipeline.h"
+#include "render/stage_times.h"
+#include "sys/parallel.h"
+#include "sys/timer.h"
+
+namespace kd::render {
+
+namespace {
+
+constexpr size_t kPixelGrain = 1024;
+constexpr size_t kTriangleGrain = 8192;
+
+std::vector<TriangleVertices> expand_triangles(const nkd::Geometry& geometry, int bits) {
+  std::vector<TriangleVertices> triangles(geometry.triangle_count());
+  parallel_ranges(triangles.size(), kTriangleGrain, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      triangles[i] = expand_triangle(geometry.vertices.data(), geometry.triangles.data() + 3 * i, bits);
+    }
+  });
+  return triangles;
+}
+
+template <class T>
+const T* data_or_null(std::span<const T> s) {
+  return s.empty() ? nullptr : s.data();
+}
+
+/// The objects as the stages see them: sections where they are mapped, triangles expanded.
+struct Objects {
+  std::vector<std::vector<TriangleVertices>> triangles;
+  std::vector<ShadedObjectView> views;
+  uint64_t bytes = 0;
+
+  explicit Objects(const LoadedScene& scene) : triangles(scene.objects.size()), views(scene.objects.size()) {
+    for (size_t i = 0; i < scene.objects.size(); ++i) {
+      if (!scene.objects[i].file) continue;
+      const nkd::ObjectFile& file = *scene.objects[i].file;
+      const nkd::Attributes& a = scene.objects[i].attributes;
+      const int bits = file.summary().lattice.bits;
+      triangles[i] = expand_triangles(file.geometry(), bits);
+      views[i] = {{file.geometry().nodes.data(), file.geometry().references.data(), triangles[i].data(), bits},
+                  file.summary().lattice.step(),
+                  data_or_null(a.source_primitives),
+                  data_or_null(a.normals),
+                  data_or_null(a.normal_indices),
+                  data_or_null(a.materials),
+                  data_or_null(a.material_ids)};
+      bytes += file.geometry().nodes.size_bytes() + file.geometry().references.size_bytes() +
+               triangles[i].size() * sizeof(TriangleVertices) + a.source_primitives.size_bytes() +
+               a.normals.size_bytes() + a.normal_indices.size_bytes() + a.materials.size_bytes() +
+               a.material_ids.size_bytes();
+    }
+  }
+};
+
+/// stage(pixel) for every pixel; returns the sum of what the calls return.
+template <class Stage>
+uint64_t for_each_pixel(const Stage& stage, size_t pixels) {
+  std::atomic<uint64_t> total = 0;
+  parallel_ranges(pixels, kPixelGrain, [&](size_t begin, size_t end) {
+    uint64_t count = 0;
+    for (size_t pixel = begin; pixel < end; ++pixel) count += stage(static_cast<uint32_t>(pixel));
+    total += count;
+  });
+  return total;
+}
+
+}  // namespace
+
+Result<std::string> cpu_probe(int) { return fmt::format("CPU: {} threads", thread_count()); }
+
+Result<Frame> cpu_render(const LoadedScene& scene, const RenderSettings& settings, int) {
+  Frame out;
+  Timer timer;
+  const Objects objects(scene);
+  const std::vector<InstanceView> instances = instance_views(scene);
+  out.stats.upload_seconds = timer.lap();
+  out.stats.object_bytes = objects.bytes;
+
+  const size_t pixels = size_t{scene.film.width} * scene.film.height;
+  std::vector<Vec3d> directions(pixels);
+  std::vector<SurfaceHit> hits(pixels);
+  std::vector<uint8_t> visibility(scene.lights.empty() ? 0 : pixels);
+  out.film.width = scene.film.width;
+  out.film.height = scene.film.height;
+  out.film.colour.resize(4 * pixels);
+  if (settings.preview) out.preview.resize(3 * pixels);
+  std::vector<AovTarget> targets;
+  for (image::Aov aov : settings.aovs) {
+    out.film.aovs.push_back({aov, std::vector<uint32_t>(static_cast<size_t>(image::aov_row(aov).components) * pixels)});
+  }
+  out.stats.frame_bytes =
+      pixels * (sizeof(Vec3d) + sizeof(SurfaceHit) + 4 * sizeof(float)) + visibility.size() + out.preview.size();
+  for (image::AovBuffer& buffer : out.film.aovs) {
+    targets.push_back({buffer.aov, buffer.words.data()});
+    out.stats.frame_bytes += buffer.words.size() * sizeof(uint32_t);
+  }
+
+  FrameView frame;
+  frame.scene = {scene.hierarchy.data(), instances.data(),    objects.views.data(),
+                 scene.overrides.data(), scene.lights.data(), static_cast<uint32_t>(instances.size()),
+                 scene.ambient,          scene.background};
+  frame.camera = scene.camera;
+  frame.width = scene.film.width;
+  frame.height = scene.film.height;
+  frame.directions = directions.data();
+  frame.hits = hits.data();
+  frame.visibility = visibility.data();
+  frame.colour = out.film.colour.data();
+  frame.preview = out.preview.data();
+  frame.inverse_gamma = 1 / settings.gamma;
+
+  const PipelinePlan plan{static_cast<uint32_t>(scene.lights.size()), targets, settings.preview,
+                          settings.gamma_on_film};
+  Timer whole;
+  run_pipeline(frame, plan, [&](const auto& stage) {
+    Timer stage_timer;
+    const uint64_t count = for_each_pixel(stage, pixels);
+    add_stage_time(out.stats, stage.kName, stage_timer.seconds());
+    add_stage_count(out.stats, stage.kName, count);
+  });
+  out.stats.render_seconds = whole.seconds();
+  return out;
+}
+
+namespace {
+
+struct StepCounter {
+  StepCounts counts;
+  void node() { ++counts.nodes; }
+  void leaf() { ++counts.leaves; }
+  void triangle() { ++counts.triangles; }
+};
+
+template <RayMode mode>
+void trace_all(const TraceView& view, const TraceJob& job, TraceOutcome& out) {
+  const auto pass = [&] {
+    parallel_ranges(job.rays.size(), 256, [&](size_t begin, size_t end) {
+      NoCounter counter;
+      for (size_t i = begin; i < end; ++i) out.hits[i] = trace_ray<mode>(view, job.rays[i], counter);
+    });
+  };
+  for (int i = 0; i < job.warm_ups; ++i) pass();
+  for (int i = 0; i < job.repeats; ++i) {
+    Timer timer;
+    pass();
+    out.seconds.push_back(timer.seconds());
+  }
+  if (!job.count_steps) return;
+  StepCounter counter;
+  for (const RayRecord& ray : job.rays) trace_ray<mode>(view, ray, counter);
+  out.steps = counter.counts;
+}
+
+}  // namespace
+
+Result<TraceOutcome> cpu_trace(const nkd::ObjectFile& object, const TraceJob& job, int) {
+  auto sources = object.source_primitives();
+  if (!sources) return sources.error();
+  const nkd::Geometry& geometry = object.geometry();
+  const Lattice& lattice = object.summary().lattice;
+  const std::vector<TriangleVertices> triangles = expand_triangles(geometry, lattice.bits);
+  const TraceView view{{geometry.nodes.data(), geometry.references.data(), triangles.data(), lattice.bits},
+                       invert(lattice.frame()),
+                       data_or_null(*sources)};
+  TraceOutcome out;
+  out.hits.resize(job.rays.size());
+  out.device_bytes =
+      geometry.nodes.size_bytes() + geometry.references.size_bytes() + triangles.size() * sizeof(TriangleVertices);
+  if (job.mode == RayMode::closest) {
+    trace_all<RayMode::closest>(view, job, out);
+  } else {
+    trace_all<RayMode::any>(view, job, out);
+  }
+  return out;
+}
+
+}  // namespace kd::render

@@ -1,0 +1,28 @@
+// Adds up the time of each stage over its launches.
+#pragma once
+
+#include <string_view>
+
+#include "render/backend.h"
+#include "render/pipeline.h"
+
+namespace kd::render {
+
+inline void add_stage_time(RenderStats& stats, std::string_view stage, double seconds) {
+  for (StageTime& known : stats.stages) {
+    if (known.stage != stage) continue;
+    known.seconds += seconds;
+    ++known.launches;
+    return;
+  }
+  stats.stages.push_back({std::string(stage), seconds, 1});
+}
+
+/// What a stage's return values add up to, where it counts something.
+inline void add_stage_count(RenderStats& stats, std::string_view stage, uint64_t count) {
+  if (stage == RayGeneration::kName) stats.primary_rays += count;
+  if (stage == ObjectIntersection::kName) stats.primary_hits += count;
+  if (stage == Shadow::kName) stats.shadow_rays += count;
+}
+
+}  // namespace kd::render

@@ -1,0 +1,109 @@
+// Object intersection: a ray against every instance whose box it passes, each through the object's own kd-tree.
+#pragma once
+
+#include "core/traversal.h"
+#include "render/stages/intersection_reduction.h"
+#include "render/stages/ray_generation.h"
+#include "render/view.h"
+
+namespace kd::render {
+
+/// What a shadow ray starts on, and so never meets.
+struct Excluded {
+  uint32_t instance = kNone;
+  uint32_t triangle = kNone;
+};
+
+namespace detail {
+
+/// Takes the ray into the instance's lattice. `s_limit`: the distance there of `t_limit`, rounded up.
+KD_HD KD_INLINE bool enter_instance(const SceneView& scene, uint32_t index, const Ray& ray, double t_limit,
+                                    LatticeRay& lattice_ray, float& s_limit) {
+  const InstanceView& instance = scene.instances[index];
+  const Vec3d origin = instance.to_lattice.apply_point(ray.origin);
+  const Vec3d direction = instance.to_lattice.apply_vector(ray.direction);
+  if (!snap_ray(origin, direction, ray.t_min, ray.t_max, scene.objects[instance.object].tree.bits, lattice_ray))
+    return false;
+  const double s = (t_limit - lattice_ray.t_base) / lattice_ray.t_scale;
+  s_limit = static_cast<float>(min_of(s, 1e30)) * (1 + 0x1p-20f);
+  return s >= 0;
+}
+
+/// Calls visit(instance) for instances whose boxes the ray passes, nearer boxes first, while visit returns true. Boxes
+/// that begin beyond `t_limit`, which visit may lower, are left out.
+template <class Visit>
+KD_HD void for_each_instance(const SceneView& scene, const Ray& ray, const double& t_limit, const Visit& visit) {
+  if (scene.instance_count == 0) return;
+  const Vec3d inverse = inverse_direction(ray.direction);
+  uint32_t stack[kMaxHierarchyDepth + 1];
+  int open = 0;
+  if (const Passage p = pass_box(scene.hierarchy[0], ray.origin, inverse, ray.t_min, t_limit); p.enter > p.leave)
+    return;
+  stack[open++] = 0;
+  while (open > 0) {
+    const HierarchyNode& node = scene.hierarchy[stack[--open]];
+    if (node.is_leaf) {
+      if (!visit(node.first)) return;
+      continue;
+    }
+    const Passage a = pass_box(scene.hierarchy[node.first], ray.origin, inverse, ray.t_min, t_limit);
+    const Passage b = pass_box(scene.hierarchy[node.first + 1], ray.origin, inverse, ray.t_min, t_limit);
+    const bool a_first = a.enter <= b.enter;
+    const Passage near = a_first ? a : b, far = a_first ? b : a;
+    const uint32_t near_child = node.first + (a_first ? 0u : 1u), far_child = node.first + (a_first ? 1u : 0u);
+    if (far.enter <= far.leave) stack[open++] = far_child;
+    if (near.enter <= near.leave) stack[open++] = near_child;
+  }
+}
+
+}  // namespace detail
+
+/// The nearest hit of a ray in the scene.
+KD_HD inline SurfaceHit closest_hit(const SceneView& scene, const Ray& ray) {
+  SurfaceHit best;
+  double t_limit = ray.t_max;
+  detail::for_each_instance(scene, ray, t_limit, [&](uint32_t index) {
+    LatticeRay lattice_ray;
+    float s_limit;
+    if (!detail::enter_instance(scene, index, ray, t_limit, lattice_ray, s_limit)) return true;
+    const ObjectView& object = scene.objects[scene.instances[index].object].tree;
+    NoCounter counter;
+    const uint32_t triangle = traverse<RayMode::closest>(object, lattice_ray, s_limit, kNoTriangle, counter);
+    if (triangle == kNoTriangle) return true;
+    TriangleHit hit;
+    intersect_triangle(lattice_ray, object.triangles[triangle], s_limit, hit);
+    reduce(best, {lattice_ray.t_at(hit.s), hit.u, hit.v, index, triangle});
+    t_limit = best.t;
+    return true;
+  });
+  return best;
+}
+
+/// Whether the ray meets anything but `excluded`.
+KD_HD inline bool any_hit(const SceneView& scene, const Ray& ray, Excluded excluded) {
+  bool met = false;
+  detail::for_each_instance(scene, ray, ray.t_max, [&](uint32_t index) {
+    LatticeRay lattice_ray;
+    float s_limit;
+    if (!detail::enter_instance(scene, index, ray, ray.t_max, lattice_ray, s_limit)) return true;
+    const ObjectView& object = scene.objects[scene.instances[index].object].tree;
+    const uint32_t own = excluded.instance == index ? excluded.triangle : kNoTriangle;
+    NoCounter counter;
+    met = traverse<RayMode::any>(object, lattice_ray, s_limit, own, counter) != kNoTriangle;
+    return !met;
+  });
+  return met;
+}
+
+struct ObjectIntersection {
+  static constexpr const char* kName = "object intersection";
+  FrameView frame;
+
+  KD_HD uint32_t operator()(uint32_t pixel) const {
+    const SurfaceHit hit = closest_hit(frame.scene, primary_ray(frame, pixel));
+    frame.hits[pixel] = hit;
+    return hit.instance != kNone;
+  }
+};
+
+}  // namespace kd::render

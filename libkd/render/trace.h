@@ -1,0 +1,72 @@
+// Tracing rays against one object, without a scene: what benchmarks and comparisons with other tracers use.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/frame.h"
+#include "core/traversal.h"
+
+namespace kd::render {
+
+/// A ray in model space as RAYS.bin has it: 32 bytes, little-endian.
+struct RayRecord {
+  float ox, oy, oz, t_min, dx, dy, dz, t_max;
+};
+static_assert(sizeof(RayRecord) == 32);
+
+/// A hit as HITS.bin has it: 16 bytes. A miss has primitive -1 and the ray's t_max; with RayMode::any the hit is
+/// whichever was found first.
+struct HitRecord {
+  float t;
+  int32_t primitive;  // the triangle's number in the source mesh
+  float u, v;
+};
+static_assert(sizeof(HitRecord) == 16);
+
+/// An object ready for tracing.
+struct TraceView {
+  ObjectView object;
+  InverseFrame to_lattice;                      // from model space
+  const uint32_t* source_primitives = nullptr;  // null: triangle i is primitive i
+};
+
+template <RayMode mode, class Counter>
+KD_HD inline HitRecord trace_ray(const TraceView& view, const RayRecord& r, Counter& counter) {
+  const Vec3d origin = view.to_lattice.apply_point({r.ox, r.oy, r.oz});
+  const Vec3d direction = view.to_lattice.apply_vector({r.dx, r.dy, r.dz});
+  const HitRecord miss{r.t_max, -1, 0, 0};
+  LatticeRay ray;
+  if (!snap_ray(origin, direction, r.t_min, r.t_max, view.object.bits, ray)) return miss;
+  const uint32_t triangle = traverse<mode>(view.object, ray, ray.s_max, kNoTriangle, counter);
+  if (triangle == kNoTriangle) return miss;
+  TriangleHit hit;
+  intersect_triangle(ray, view.object.triangles[triangle], ray.s_max, hit);
+  const uint32_t source = view.source_primitives ? view.source_primitives[triangle] : triangle;
+  return {static_cast<float>(ray.t_at(hit.s)), static_cast<int32_t>(source), static_cast<float>(hit.u),
+          static_cast<float>(hit.v)};
+}
+
+struct TraceJob {
+  std::span<const RayRecord> rays;
+  RayMode mode = RayMode::closest;
+  int warm_ups = 3;
+  int repeats = 10;          // >= 1
+  bool count_steps = false;  // CPU only: one more pass that counts
+};
+
+struct StepCounts {
+  uint64_t nodes = 0;
+  uint64_t leaves = 0;
+  uint64_t triangles = 0;
+};
+
+struct TraceOutcome {
+  std::vector<HitRecord> hits;  // one a ray
+  std::vector<double> seconds;  // one a repeat: the kernel, or the parallel loop
+  uint64_t device_bytes = 0;    // of the object: nodes, references, triangles
+  StepCounts steps;
+};
+
+}  // namespace kd::render

@@ -1,0 +1,84 @@
+// What the stages see of a scene and of the frame they work on: plain pointers, on the host or on a device.
+#pragma once
+
+#include <cstdint>
+
+#include "core/frame.h"
+#include "core/hierarchy.h"
+#include "core/material.h"
+#include "core/object_view.h"
+
+namespace kd::render {
+
+constexpr uint32_t kNone = 0xffffffffu;
+
+/// An object and what shading reads of it. A null section is one that the object lacks or no stage asked for.
+struct ShadedObjectView {
+  ObjectView tree;
+  Vec3d step;                                   // the lattice's, model units
+  const uint32_t* source_primitives = nullptr;  // null: triangle i is primitive i of the source
+  const Vec3f* normals = nullptr;
+  const uint32_t* normal_indices = nullptr;
+  const Material* materials = nullptr;
+  const uint16_t* material_ids = nullptr;
+};
+
+struct InstanceView {
+  InverseFrame to_lattice;
+  Frame to_scene;
+  uint32_t object = 0;
+  uint32_t material = kNone;  // index into SceneView::overrides: instead of the object's own materials
+};
+
+struct LightView {
+  Vec3d vector;  // scene space: where a point light is; the way to a directional one, length 1
+  Vec3f colour;
+  uint32_t is_point = 1;
+};
+
+struct SceneView {
+  const HierarchyNode* hierarchy = nullptr;
+  const InstanceView* instances = nullptr;
+  const ShadedObjectView* objects = nullptr;
+  const Material* overrides = nullptr;
+  const LightView* lights = nullptr;
+  uint32_t instance_count = 0;
+  Vec3f ambient;
+  Vec3f background;
+};
+
+/// The direction through the centre of pixel (x, y), not normalised: corner + x * right + y * down.
+struct CameraView {
+  Vec3d position;
+  Vec3d corner;
+  Vec3d right;
+  Vec3d down;
+};
+
+/// The nearest hit of a pixel's ray.
+struct SurfaceHit {
+  double t = 0;  // along the ray; its direction has length 1
+  double u = 0;  // weights of the triangle's second and third vertex
+  double v = 0;
+  uint32_t instance = kNone;  // kNone: the ray met nothing
+  uint32_t triangle = kNone;  // in the object
+};
+
+/// What the shadow stage found out about one light.
+enum Visibility : uint8_t { kNotAsked = 0, kOccluded = 1, kLit = 2 };
+
+/// The buffers of one frame, one element a pixel in row order. Those that no stage uses are null.
+struct FrameView {
+  SceneView scene;
+  CameraView camera;
+  uint32_t width = 0;
+  uint32_t height = 0;
+  Vec3d* directions = nullptr;
+  SurfaceHit* hits = nullptr;
+  uint8_t* visibility = nullptr;
+  float* colour = nullptr;     // RGBA
+  uint8_t* preview = nullptr;  // RGB
+  double inverse_gamma = 1;
+};
+
+}  // namespace kd::render

@@ -1,0 +1,38 @@
+// Instances: every part of every character, placed.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/box.h"
+#include "core/frame.h"
+#include "core/hierarchy.h"
+#include "core/lattice.h"
+#include "scene/scene.h"
+#include "sys/result.h"
+
+namespace kd::scene {
+
+struct Instance {
+  uint32_t object = 0;  // index into Scene::objects
+  Frame lattice_to_scene;
+  InverseFrame scene_to_lattice;
+  Box3d box_scene;                   // around the object's box as placed
+  std::optional<Material> material;  // instead of the object's own
+};
+
+/// Which objects some part places, by index.
+std::vector<bool> used_objects(const Scene& scene);
+
+/// Instances in the order of the scene file. `lattices`: one an object; those of objects that no part places are not
+/// read. ErrorClass::scene, with the part's line, if a placement is singular or leaves the range of double.
+Result<std::vector<Instance>> place_instances(const Scene& scene, std::span<const Lattice> lattices);
+
+/// A tree of boxes over the instances: node 0 is the root, a leaf holds one instance, children follow their parents.
+/// Split by the surface area heuristic over box centres, exhaustively; no deeper than kMaxHierarchyDepth. Empty for no
+/// instances. Boxes are widened by 1e-12 of their coordinates, more than the ray test's rounding.
+std::vector<HierarchyNode> build_hierarchy(std::span<const Instance> instances);
+
+}  // namespace kd::scene

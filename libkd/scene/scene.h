@@ -1,0 +1,87 @@
+// A scene: what a scene file says, as plain structs. Scene space, right-handed, in double; colours scene-linear; angles
+// in degrees. `parse_scene` keeps the ranges named here; who fills a Scene by hand keeps them too.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/frame.h"
+#include "core/material.h"
+#include "core/vec.h"
+
+namespace kd::scene {
+
+constexpr uint32_t kMaxFilmSide = 65536;         // pixels
+constexpr uint64_t kMaxFilmPixels = 1ull << 28;  // width x height
+
+/// In pixels, each from 1 to kMaxFilmSide, their product at most kMaxFilmPixels.
+struct FilmSize {
+  uint32_t width = 512;
+  uint32_t height = 512;
+};
+
+/// Looks from `position` to `target`, which differ; `up` is not parallel to that way, and need not be perpendicular.
+struct Camera {
+  Vec3d position{0, 0, 0};
+  Vec3d target{0, 0, -1};
+  Vec3d up{0, 1, 0};
+  double vertical_fov_degrees = 45;  // over the film's height, between 0 and 180
+};
+
+enum class LightKind : uint8_t { point, directional };
+
+struct Light {
+  LightKind kind = LightKind::point;
+  Vec3d position{0, 0, 0};    // scene space; of a point light
+  Vec3d direction{0, -1, 0};  // the way the light travels, length 1; of a directional one
+  Vec3f colour{1, 1, 1};      // >= 0
+};
+
+struct SceneObject {
+  std::string name;  // no two the same
+  std::string file;  // a .nkd; a path that can be opened from the working directory
+};
+
+/// The object's unit cube fills the box.
+struct BoxPlacement {
+  Frame box;
+};
+
+/// Applied to the object's model space: scaled first, then rotated counterclockwise about the axis, then moved.
+struct TransformPlacement {
+  Vec3d translate{0, 0, 0};
+  Vec3d rotate_axis{0, 0, 1};  // not zero, of any length
+  double rotate_degrees = 0;
+  Vec3d scale{1, 1, 1};  // no component is zero; a negative one mirrors
+};
+
+using Placement = std::variant<BoxPlacement, TransformPlacement>;
+
+struct Part {
+  std::string name;     // may be empty
+  uint32_t object = 0;  // index into Scene::objects
+  Placement placement = TransformPlacement{};
+  std::optional<Material> material;  // instead of the object's own
+  int line = 0;                      // in the scene file, from 1, for errors that only its object's box can show
+};
+
+struct Character {
+  std::string name;  // may be empty
+  std::vector<Part> parts;
+};
+
+struct Scene {
+  std::string path;  // of the scene file, for errors
+  FilmSize film;
+  Camera camera;
+  Vec3f background{0, 0, 0};  // >= 0, as all colours; what a ray that meets nothing returns
+  Vec3f ambient{0, 0, 0};
+  std::vector<Light> lights;
+  std::vector<SceneObject> objects;
+  std::vector<Character> characters;
+};
+
+}  // namespace kd::scene

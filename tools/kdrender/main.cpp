@@ -1,0 +1,108 @@
+// kdrender: renders a scene file to OpenEXR, and a PNG to look at.
+#include <fmt/format.h>
+
+#include "common/console.h"
+#include "common/report.h"
+#include "image/exr.h"
+#include "image/png.h"
+#include "kdrender/render_report.h"
+#include "render/backend.h"
+#include "scene/parse_scene.h"
+#include "sys/atomic_file.h"
+#include "sys/parallel.h"
+#include "sys/timer.h"
+
+namespace {
+
+using namespace kd;
+using namespace kd::tools;
+
+constexpr const char* kKdrender = "kdrender";
+
+struct Options {
+  std::string scene, output, preview, stats, aovs;
+  std::string device = "auto";
+  double gamma = 2.2;
+  bool gamma_on_exr = false;
+  unsigned threads = 0;
+  bool quiet = false;
+};
+
+void add_options(CLI::App& app, Options& o) {
+  std::string aov_help = "AOVs to write as further channels, separated by commas:";
+  for (const image::AovRow& row : image::kAovRows) aov_help += fmt::format(" {}", row.name);
+  app.add_option("scene", o.scene, "Scene file (JSON, see schema/scene.fbs)")->required();
+  app.add_option("-o,--output", o.output, "The EXR to write: R, G, B, A and AOVs, scene-linear")->required();
+  app.add_option("--preview", o.preview, "Write an 8-bit PNG too, through the gamma stage");
+  app.add_option("--device", o.device, "auto, cpu, cuda or cuda:N")->capture_default_str();
+  app.add_option("--aov", o.aovs, aov_help);
+  app.add_option("--gamma", o.gamma, "Gamma of the preview")->check(CLI::Range(0.1, 10.0))->capture_default_str();
+  app.add_flag("--gamma-exr", o.gamma_on_exr, "Apply the gamma to the EXR as well; its header then says so");
+  app.add_option("--stats", o.stats, "Write a JSON report to this file, or to stdout (-)");
+  app.add_option("--threads", o.threads, "CPU threads to use; 0: all cores")->capture_default_str();
+  app.add_flag("--quiet", o.quiet, "Print nothing but errors");
+}
+
+/// Finds out before the work whether every output can be written.
+Result<void> check_outputs(const Options& o) {
+  for (const std::string& path : {o.output, o.preview, o.stats}) {
+    if (path.empty() || path == "-") continue;
+    if (auto writable = AtomicFile::create(path); !writable) return writable.error();
+  }
+  return {};
+}
+
+Result<void> write_images(const Options& o, const render::Frame& frame) {
+  image::ExrHeader header;
+  header.software = version_text();
+  if (o.gamma_on_exr) header.gamma = o.gamma;
+  if (auto written = image::write_exr(o.output, frame.film, header); !written) return written;
+  if (o.preview.empty()) return {};
+  return image::write_png(o.preview, frame.film.width, frame.film.height, frame.preview);
+}
+
+Result<void> render_scene(const Options& o) {
+  const ThreadLimit limit(o.threads);
+  auto aovs = image::parse_aovs(o.aovs);
+  if (!aovs) return aovs.error();
+  if (auto writable = check_outputs(o); !writable) return writable;
+  auto device = render::choose_device(o.device);
+  if (!device) return device.error();
+
+  RenderTimes times;
+  Timer timer;
+  auto scene = scene::read_scene(o.scene);
+  if (!scene) return scene.error();
+  times.parse = timer.lap();
+  const render::RenderSettings settings{*aovs, !o.preview.empty(), o.gamma, o.gamma_on_exr};
+  auto loaded = render::load_scene(*scene, settings);
+  if (!loaded) return loaded.error();
+  times.load = timer.lap();
+
+  const bool text = !o.quiet && o.stats != "-";
+  if (text) {
+    fmt::print("{}: on {}{}\n", o.scene, device->description,
+               device->reason.empty() ? "" : fmt::format(" ({})", device->reason));
+  }
+  auto frame = device->backend->render(*loaded, settings, device->index);
+  if (!frame) return frame.error();
+  times.render = timer.lap();
+  if (auto written = write_images(o, *frame); !written) return written;
+  times.write = timer.lap();
+
+  if (text) print_render(o.output, *loaded, frame->stats, times);
+  if (o.stats.empty()) return {};
+  return write_report(o.stats, render_json(o.scene, o.output, *device, *loaded, frame->stats, times));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Renders a scene of .nkd objects to OpenEXR, on CUDA or on the CPU.", kKdrender);
+  Options options;
+  add_options(app, options);
+  return run_tool(app, argc, argv, [&] {
+    const auto rendered = render_scene(options);
+    return rendered ? 0 : fail(kKdrender, rendered.error());
+  });
+}

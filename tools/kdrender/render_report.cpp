@@ -1,0 +1,95 @@
+#include "kdrender/render_report.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "common/console.h"
+
+namespace kd::tools {
+
+namespace {
+
+uint64_t triangles_of(const render::LoadedObject& object) {
+  return object.file ? object.file->geometry().triangle_count() : 0;
+}
+
+/// As if every instance had triangles of its own.
+uint64_t instanced_triangles(const render::LoadedScene& scene) {
+  uint64_t total = 0;
+  for (const scene::Instance& instance : scene.instances) total += triangles_of(scene.objects[instance.object]);
+  return total;
+}
+
+size_t opened_objects(const render::LoadedScene& scene) {
+  return static_cast<size_t>(std::count_if(scene.objects.begin(), scene.objects.end(),
+                                           [](const auto& object) { return object.file.has_value(); }));
+}
+
+}  // namespace
+
+Json render_json(const std::string& scene_path, const std::string& output, const render::Device& device,
+                 const render::LoadedScene& scene, const render::RenderStats& stats, const RenderTimes& times) {
+  Json stages = Json::array();
+  for (const render::StageTime& stage : stats.stages) {
+    stages.push_back({{"stage", stage.stage}, {"launches", stage.launches}, {"seconds", stage.seconds}});
+  }
+  Json objects = Json::array();
+  for (const render::LoadedObject& object : scene.objects) {
+    if (!object.file) continue;
+    objects.push_back({{"file", object.file->path()},
+                       {"triangles", triangles_of(object)},
+                       {"sah_cost", object.file->summary().tree.sah_cost},
+                       {"max_displacement", object.file->summary().max_displacement}});
+  }
+  const render::Skipped& skipped = scene.skipped;
+  return {
+      {"version", 1},
+      {"tool", version_text()},
+      {"scene", scene_path},
+      {"output", output},
+      {"device", {{"backend", device.backend->name}, {"description", device.description}, {"reason", device.reason}}},
+      {"film", {{"width", scene.film.width}, {"height", scene.film.height}}},
+      {"seconds",
+       {{"parse", times.parse},
+        {"load", times.load},
+        {"upload", stats.upload_seconds},
+        {"stages", stats.render_seconds},
+        {"download", stats.download_seconds},
+        {"write", times.write}}},
+      {"stages", stages},
+      {"counts",
+       {{"objects", opened_objects(scene)},
+        {"instances", scene.instances.size()},
+        {"triangles_as_seen", instanced_triangles(scene)},
+        {"lights", scene.lights.size()}}},
+      {"rays", {{"primary", stats.primary_rays}, {"primary_hits", stats.primary_hits}, {"shadow", stats.shadow_rays}}},
+      {"bytes", {{"objects", stats.object_bytes}, {"frame", stats.frame_bytes}}},
+      {"objects", objects},
+      {"skipped",
+       {{"objects_not_opened", skipped.objects},
+        {"sections_not_read", skipped.sections},
+        {"black_lights", skipped.black_lights},
+        {"shadow_launches", skipped.shadow_launches},
+        {"shadow_rays", stats.primary_hits * scene.lights.size() - stats.shadow_rays},
+        {"aov_buffers", skipped.aov_buffers}}},
+  };
+}
+
+void print_render(const std::string& output, const render::LoadedScene& scene, const render::RenderStats& stats,
+                  const RenderTimes& times) {
+  const uint64_t rays = stats.primary_rays + stats.shadow_rays;
+  fmt::print("  {} objects, {} instances, {} triangles as seen, {} lights\n", opened_objects(scene),
+             scene.instances.size(), instanced_triangles(scene), scene.lights.size());
+  fmt::print("  {} primary rays ({} hit), {} shadow rays ({} not needed): {:.2f} Mrays/s\n", stats.primary_rays,
+             stats.primary_hits, stats.shadow_rays, stats.primary_hits * scene.lights.size() - stats.shadow_rays,
+             static_cast<double>(rays) / std::max(stats.render_seconds, 1e-9) * 1e-6);
+  fmt::print(
+      "  load {:.3f} s, upload {:.3f} s, stages {:.4f} s, download {:.4f} s, write {:.3f} s; {:.1f} MiB of objects on "
+      "the device\n",
+      times.load, stats.upload_seconds, stats.render_seconds, stats.download_seconds, times.write,
+      static_cast<double>(stats.object_bytes) / (1 << 20));
+  fmt::print("{}: {} x {}\n", output, scene.film.width, scene.film.height);
+}
+
+}  // namespace kd::tools

@@ -1,0 +1,22 @@
+// What kdrender tells of a render: as text, and as JSON for --stats (schema/kdrender-stats.schema.json).
+#pragma once
+
+#include "common/report.h"
+#include "render/backend.h"
+
+namespace kd::tools {
+
+struct RenderTimes {
+  double parse = 0;
+  double load = 0;    // opening, validating, placing
+  double render = 0;  // upload, stages and download
+  double write = 0;
+};
+
+Json render_json(const std::string& scene_path, const std::string& output, const render::Device& device,
+                 const render::LoadedScene& scene, const render::RenderStats& stats, const RenderTimes& times);
+
+void print_render(const std::string& output, const render::LoadedScene& scene, const render::RenderStats& stats,
+                  const RenderTimes& times);
+
+}  // namespace kd::tools
