@@ -1,0 +1,159 @@
+// The small parts: lattice, packing, node bits, powers, statistics.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
+
+#include "core/node.h"
+#include "core/object_view.h"
+#include "core/power.h"
+#include "core/shapes.h"
+
+using namespace kd;
+using namespace kd::test;
+
+TEST_CASE("lattice: there and back is off by at most half a step") {
+  for (const int bits : {1, 10, 12, 16, 18, 21, 24}) {
+    for (const double size : {1.0, 1e-12, 1e12}) {
+      CAPTURE(bits);
+      CAPTURE(size);
+      Random random(4);
+      const Lattice lattice{random.vector(size), Vec3d{1, 1e-3, 7} * size, bits};
+      const Vec3d step = lattice.step();
+      double worst = 0;
+      for (int i = 0; i < 20000; ++i) {
+        const Vec3d p = lattice.origin + Vec3d{random.unit(), random.unit(), random.unit()} * lattice.extent;
+        const Vec3u q = lattice.to_lattice(p);
+        const Vec3d back = lattice.to_model(q);
+        for (int axis = 0; axis < 3; ++axis) {
+          REQUIRE(q[axis] <= lattice_max(bits));
+          worst = std::max(worst, std::fabs(back[axis] - p[axis]) / (step[axis] + size * 0x1p-45));
+        }
+      }
+      CHECK(worst <= 0.5);
+      CHECK(worst > 0.45);
+      CHECK(lattice.to_lattice(lattice.origin) == Vec3u{0, 0, 0});
+      const uint32_t top = lattice_max(bits);
+      CHECK(lattice.to_lattice(lattice.origin + lattice.extent) == Vec3u{top, top, top});
+    }
+  }
+}
+
+TEST_CASE("lattice: a lattice point comes back as itself") {
+  for (const int bits : {1, 10, 12, 16, 18, 21, 24}) {
+    Random random(6);
+    const Lattice lattice{{-3, 100, 1e3}, {1e-2, 50, 7e5}, bits};
+    for (int i = 0; i < 10000; ++i) {
+      const Vec3u q = random.point(lattice_max(bits));
+      REQUIRE(lattice.to_lattice(lattice.to_model(q)) == q);
+    }
+  }
+}
+
+TEST_CASE("lattice: axes without extent") {
+  const Lattice flat{{1, 2, 3}, {4, 0, 8}, 10};
+  CHECK(flat.cube().hi == Vec3u{1023, 0, 1023});
+  CHECK(flat.step().y == flat.step().z);
+  CHECK(flat.to_lattice({3, 2, 5}).y == 0);
+  CHECK(flat.to_model({0, 0, 1023}) == Vec3d{1, 2, 11});
+  CHECK_FALSE(is_singular(flat.frame()));
+  const Lattice point{{1, 2, 3}, {0, 0, 0}, 21};
+  CHECK(point.cube().hi == Vec3u{0, 0, 0});
+  CHECK_FALSE(is_singular(point.frame()));
+}
+
+TEST_CASE("lattice: packing in one, two and three words") {
+  CHECK(vertex_words(1) == 1);
+  CHECK(vertex_words(10) == 1);
+  CHECK(vertex_words(11) == 2);
+  CHECK(vertex_words(21) == 2);
+  CHECK(vertex_words(22) == 3);
+  for (int bits = kMinLatticeBits; bits <= kMaxLatticeBits; ++bits) {
+    CAPTURE(bits);
+    Random random(static_cast<uint64_t>(bits));
+    const uint32_t top = lattice_max(bits);
+    for (int i = 0; i < 1000; ++i) {
+      Vec3u q = random.point(top);
+      if (i < 8) q = {i & 1 ? top : 0, i & 2 ? top : 0, i & 4 ? top : 0};
+      uint32_t words[4] = {0xabadcafe, 0xabadcafe, 0xabadcafe, 0xabadcafe};
+      pack_vertex(q, bits, words);
+      REQUIRE(unpack_vertex(words, bits) == q);
+      for (int w = vertex_words(bits); w < 4; ++w) REQUIRE(words[w] == 0xabadcafe);
+    }
+  }
+  const uint32_t words[6] = {0, 1, 2, 3, 4, 5}, corners[3] = {1, 0, 1};
+  const TriangleVertices t = expand_triangle(words, corners, 24);
+  CHECK(t.a == Vec3f{3, 4, 5});
+  CHECK(t.b == Vec3f{0, 1, 2});
+  CHECK(t.c == t.a);
+}
+
+TEST_CASE("node: bits as stored") {
+  const Node inner = make_inner(2, lattice_max(24), 0x3ffffffe);
+  CHECK_FALSE(is_leaf(inner));
+  CHECK(split_axis(inner) == 2);
+  CHECK(split_plane(inner) == 16777215.0f);
+  CHECK(first_child(inner) == 0x3ffffffe);
+  CHECK(make_inner(1, 1, 2) == Node{0x3f800000, 2 << 2 | 1});
+  const Node leaf = make_leaf(0xfffffff0, kMaxLink);
+  CHECK(is_leaf(leaf));
+  CHECK(first_reference(leaf) == 0xfffffff0);
+  CHECK(reference_count(leaf) == kMaxLink);
+  CHECK(is_leaf(Node{}));
+  CHECK(reference_count(Node{}) == 0);
+  for (uint32_t plane : {0u, 1u, 12345u, (1u << 24) - 1}) {
+    CHECK(static_cast<uint32_t>(split_plane(make_inner(0, plane, 2))) == plane);
+  }
+}
+
+TEST_CASE("power: against std::pow, to 1e-13, and 3e-13 at the ends of the range") {
+  Random random(1);
+  double worst = 0, worst_at_ends = 0;
+  const auto compare = [&](double x, double y) {
+    const double expected = std::pow(x, y);
+    if (expected < 1e-300 || expected > 1e300) return;
+    double& bound = expected > 1e-150 && expected < 1e150 ? worst : worst_at_ends;
+    bound = std::max(bound, std::fabs(exact_pow(x, y) / expected - 1));
+  };
+  for (int i = 0; i < 300000; ++i) {
+    compare(random.unit(), random.real(0, 400));                          // highlights
+    compare(random.real(0, 4), 1 / random.real(0.5, 4));                  // gamma
+    compare(std::pow(10.0, random.real(-100, 100)), random.real(-3, 3));  // wide
+    compare(1 + random.real(-1e-6, 1e-6), random.real(-1e6, 1e6));        // next to 1
+  }
+  CHECK(worst <= 1e-13);
+  CHECK(worst_at_ends <= 3e-13);
+}
+
+TEST_CASE("power: edges") {
+  CHECK(exact_pow(0, 0) == 1);
+  CHECK(exact_pow(5, 0) == 1);
+  CHECK(exact_pow(0, 2) == 0);
+  CHECK(exact_pow(0, -2) == HUGE_VAL);
+  CHECK(exact_pow(DBL_MIN / 2, 2) == 0);
+  CHECK(exact_pow(1, 1e300) == 1);
+  CHECK(exact_pow(1, -123.25) == 1);
+  CHECK(exact_pow(2, 10) == 1024);
+  CHECK(exact_pow(2, 1023) == std::ldexp(1.0, 1023));
+  CHECK(exact_pow(2, 1024) == HUGE_VAL);
+  CHECK(exact_pow(2, -1022) == DBL_MIN);
+  CHECK(exact_pow(2, -1e9) == 0);
+  CHECK(exact_pow(10, 1e300) == HUGE_VAL);
+  CHECK(exact_pow(0.5, 1e300) == 0);
+  CHECK(exact_exp2(1023.75) == doctest::Approx(std::exp2(1023.75)).epsilon(1e-13));
+  CHECK(exact_log2(1) == 0);
+  CHECK(exact_log2(8) == 3);
+  CHECK(exact_log2(DBL_MAX) == doctest::Approx(1024));
+}
+
+TEST_CASE("vec: lengths and finiteness at the ends of the range") {
+  for (const double size : {1e-300, 1e-150, 1.0, 1e150, 1e300}) {
+    CHECK(length(normalised({size, -2 * size, 2 * size})) == doctest::Approx(1));
+  }
+  CHECK(normalised({0, 0, 0}) == Vec3d{0, 0, 0});
+  CHECK(is_finite({1e308, 1e308, 1e308}));
+  CHECK_FALSE(is_finite({0, 0, std::nan("")}));
+  CHECK_FALSE(is_finite({-HUGE_VAL, 0, 0}));
+  CHECK(cross(Vec3d{1, 0, 0}, Vec3d{0, 1, 0}) == Vec3d{0, 0, 1});
+}

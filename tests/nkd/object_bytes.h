@@ -1,0 +1,107 @@
+// Objects in memory that a test can spoil, and files of them.
+#pragma once
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "../core/shapes.h"
+#include "nkd/object_file.h"
+#include "nkd/validate.h"
+#include "nkd/write.h"
+
+namespace kd::test {
+
+class TempFolder {
+ public:
+  TempFolder() {
+    static int next = 0;
+    path_ = std::filesystem::temp_directory_path() /
+            ("kd_nkd_" + std::to_string(::getpid()) + "_" + std::to_string(next++));
+    std::filesystem::create_directories(path_);
+  }
+  ~TempFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  TempFolder(const TempFolder&) = delete;
+  TempFolder& operator=(const TempFolder&) = delete;
+
+  std::string file(const std::string& name) const { return (path_ / name).string(); }
+  std::string write(const std::string& name, const std::string& bytes) const {
+    std::ofstream(file(name), std::ios::binary | std::ios::trunc) << bytes;
+    return file(name);
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+inline std::string read_bytes(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// All that a .nkd holds, owned; sound as made, with every section.
+struct Contents {
+  nkd::Summary summary;
+  std::vector<Node> nodes;
+  std::vector<uint32_t> references, triangles, vertices;
+  std::vector<uint32_t> source_primitives, normal_indices;
+  std::vector<Vec3f> normals;
+  std::vector<Material> materials;
+  std::vector<uint16_t> material_ids;
+
+  Contents(const Shape& shape, int bits, bool attributes = true) {
+    summary.lattice = cube_lattice(bits);
+    summary.max_displacement = 0.5;
+    summary.rms_displacement = 0.25;
+    summary.provenance = {"shape.ply", 0x0123456789abcdefull, "--bits " + std::to_string(bits), "test 1"};
+    build::Tree tree = *build::build_tree(summary.lattice, shape.vertices, shape.triangles, {});
+    nodes = std::move(tree.nodes);
+    references = std::move(tree.references);
+    for (const auto& t : shape.triangles) triangles.insert(triangles.end(), t.begin(), t.end());
+    const auto words = static_cast<size_t>(vertex_words(bits));
+    vertices.resize(shape.vertices.size() * words);
+    for (size_t i = 0; i < shape.vertices.size(); ++i) pack_vertex(shape.vertices[i], bits, &vertices[i * words]);
+    count_tree();
+    if (!attributes) return;
+    for (uint32_t i = 0; i < shape.triangles.size(); ++i) source_primitives.push_back(3 * i + 1);
+    normals = {{1, 0, 0}, {0, 1, 0}, {0, 0, -1}};
+    for (uint32_t i = 0; i < triangles.size(); ++i) normal_indices.push_back(i % 4 == 3 ? 0xffffffffu : i % 4);
+    materials = {Material{}, Material{{0, 0, 0}, {0.5f, 0, 1}, {1, 1, 1}, 30}};
+    summary.material_names = {"first", "second"};
+    for (uint32_t i = 0; i < shape.triangles.size(); ++i) material_ids.push_back(static_cast<uint16_t>(i % 2));
+  }
+
+  void count_tree() { summary.tree = tree_statistics(nodes, summary.lattice); }
+
+  std::string write(const std::string& path) const {
+    const auto written = nkd::write_object(path, summary, {nodes, references, triangles, vertices},
+                                           {source_primitives, normals, normal_indices, materials, material_ids});
+    return written ? path : "";
+  }
+};
+
+/// The bytes of a stored vector's element 0, in a file that holds the section.
+template <class T>
+char* bytes_of(std::string& file, const std::vector<T>& section) {
+  const std::string wanted(reinterpret_cast<const char*>(section.data()), section.size() * sizeof(T));
+  const size_t at = file.find(wanted);
+  return at == std::string::npos ? nullptr : file.data() + at;
+}
+
+/// What opening or deep validation finds first, as "NKD307"; "sound" if nothing.
+inline std::string verdict(const std::string& path) {
+  const auto file = nkd::ObjectFile::open(path);
+  if (!file) return file.error().what.substr(0, 6);
+  const auto findings = nkd::validate(*file);
+  return findings.empty() ? "sound" : findings.front().line().substr(0, 6);
+}
+
+}  // namespace kd::test

@@ -1,0 +1,60 @@
+// The CPU and a GPU return the same bits: colour, preview and every AOV, over the scenes of data/ and the real meshes.
+#include <cstring>
+
+#include <doctest/doctest.h>
+
+#include "support/workshop.h"
+
+namespace {
+
+using namespace kd;
+using namespace kd::test;
+
+template <class T>
+size_t differing(const std::vector<T>& a, const std::vector<T>& b) {
+  if (a.size() != b.size()) return std::max(a.size(), b.size());
+  size_t count = 0;
+  for (size_t i = 0; i < a.size(); ++i) count += std::memcmp(&a[i], &b[i], sizeof(T)) != 0;
+  return count;
+}
+
+void check_same(const std::string& name, const scene::Scene& scene, const render::Device& cpu,
+                const render::Device& cuda) {
+  const render::Frame a = render_all(scene, cpu), b = render_all(scene, cuda);
+  CHECK_MESSAGE(differing(a.film.colour, b.film.colour) == 0, name);
+  CHECK_MESSAGE(differing(a.preview, b.preview) == 0, name);
+  REQUIRE(a.film.aovs.size() == b.film.aovs.size());
+  for (size_t i = 0; i < a.film.aovs.size(); ++i) {
+    const std::string aov(image::aov_row(a.film.aovs[i].aov).name);
+    CHECK_MESSAGE(differing(a.film.aovs[i].words, b.film.aovs[i].words) == 0, (name + " " + aov));
+  }
+  CHECK(a.stats.primary_hits == b.stats.primary_hits);
+  CHECK(a.stats.shadow_rays == b.stats.shadow_rays);
+  MESSAGE(name << ": the same, " << a.film.width << " x " << a.film.height << ", " << a.stats.primary_hits << " hits, "
+               << a.stats.shadow_rays << " shadow rays");
+}
+
+}  // namespace
+
+TEST_CASE("CPU and CUDA images are bit-identical") {
+  auto cuda = render::choose_device("cuda");
+  if (!cuda) {
+    MESSAGE("skipped: " << cuda.error().line());
+    return;
+  }
+  const auto cpu = render::choose_device("cpu");
+  REQUIRE(cpu);
+  Workshop workshop;
+  for (const char* name : {"cathedral.json", "spheres.json"}) check_same(name, workshop.data_scene(name), *cpu, *cuda);
+
+  for (const char* name : {"sibenik", "sponza", "bunny", "dragon_res2", "teapot", "staircase", "living_room",
+                           "bad_beetle", "bad_legocar", "bad_cycloidal", "bad_thingi_112932", "bad_thingi_1514499"}) {
+    const auto mesh = shared_mesh(std::string(name) + ".ply");
+    if (!mesh) {
+      MESSAGE("skipped: no " << name << " in " << shared_data().string());
+      continue;
+    }
+    const CameraFile camera = read_camera_file(shared_data() / "cameras" / (std::string(name) + ".txt"));
+    check_same(name, object_scene(workshop.compile(*mesh), camera), *cpu, *cuda);
+  }
+}
