@@ -157,6 +157,10 @@ class TraceRun {
     return hits;
   }
 
+  void print_bytes() const {
+    fmt::print("object on the device: {} bytes, {:.1f} a triangle\n", report_["device_bytes"].get<uint64_t>(),
+               report_["device_bytes_per_triangle"].get<double>());
+  }
   const Json& report() const { return report_; }
 
  private:
@@ -182,6 +186,7 @@ Result<void> trace(const Options& o) {
   TraceRun run(o, std::move(*object), std::move(*device));
   auto hits = o.rays.empty() ? run.trace_shared(*size) : run.trace_file();
   if (!hits) return hits.error();
+  if (o.json != "-") run.print_bytes();
   if (!o.hits.empty()) {
     if (auto written = write_file(o.hits, std::as_bytes(std::span(*hits))); !written) return written;
   }

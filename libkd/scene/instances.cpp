@@ -87,7 +87,7 @@ Result<std::vector<Instance>> place_instances(const Scene& scene, std::span<cons
         return placement_error(scene, part,
                                "the placement leaves the range of double precision: bring it nearer or scale it less");
       }
-      instances.push_back(std::move(instance));
+      instances.push_back(instance);
     }
   }
   return instances;

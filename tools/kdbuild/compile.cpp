@@ -71,6 +71,10 @@ Result<CompileReport> compile(const std::string& input, const std::string& outpu
                               const Progress& progress) {
   CompileReport report;
   Timer timer;
+  std::error_code none;
+  if (std::filesystem::equivalent(input, output, none)) {
+    return Error{ErrorClass::usage, output, "the output is the input: name another file"};
+  }
   // An output that cannot be written is found out before the work, not after it.
   if (auto writable = AtomicFile::create(output); !writable) return writable.error();
   auto mesh = mesh::read_mesh(input, {settings.ambient_from_diffuse});

@@ -86,7 +86,7 @@ Result<void> render_scene(const Options& o) {
   }
   auto frame = device->backend->render(*loaded, settings, device->index);
   if (!frame) return frame.error();
-  times.render = timer.lap();
+  timer.lap();
   if (auto written = write_images(o, *frame); !written) return written;
   times.write = timer.lap();
 

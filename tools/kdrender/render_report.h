@@ -8,8 +8,7 @@ namespace kd::tools {
 
 struct RenderTimes {
   double parse = 0;
-  double load = 0;    // opening, validating, placing
-  double render = 0;  // upload, stages and download
+  double load = 0;  // opening, validating, placing
   double write = 0;
 };
 

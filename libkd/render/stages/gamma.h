@@ -15,7 +15,7 @@ struct GammaPreview {
     for (uint64_t channel = 0; channel < 3; ++channel) {
       const double c = frame.colour[4 * static_cast<uint64_t>(pixel) + channel];
       const double shown = exact_pow(min_of(max_of(c, 0.0), 1.0), frame.inverse_gamma);
-      frame.preview[3 * static_cast<uint64_t>(pixel) + channel] = static_cast<uint8_t>(shown * 255 + 0.5);
+      frame.preview[3 * static_cast<uint64_t>(pixel) + channel] = static_cast<uint8_t>(std::floor(shown * 255 + 0.5));
     }
     return 0;
   }

@@ -15,8 +15,9 @@ struct RayGeneration {
 
   KD_HD uint32_t operator()(uint32_t pixel) const {
     const CameraView& c = frame.camera;
-    const double x = pixel % frame.width, y = pixel / frame.width;
-    frame.directions[pixel] = normalised(c.corner + c.right * x + c.down * y);
+    const uint32_t column = pixel % frame.width, row = pixel / frame.width;
+    frame.directions[pixel] =
+        normalised(c.corner + c.right * static_cast<double>(column) + c.down * static_cast<double>(row));
     return 1;
   }
 };
