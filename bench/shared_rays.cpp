@@ -20,11 +20,16 @@ Vec3d unit(Vec3d a) {
   return l > 0 ? Vec3d{a.x / l, a.y / l, a.z / l} : a;
 }
 
-/// Every second bit of a Morton code.
-uint32_t even_bits(uint64_t code) {
-  uint32_t value = 0;
-  for (int bit = 0; bit < 32; ++bit) value |= static_cast<uint32_t>(code >> (2 * bit) & 1) << bit;
-  return value;
+/// Calls visit(x, y) for the pixels of a film that lie in the square at (x, y), in Z-order, x lowest.
+template <class Visit>
+void for_each_in_z_order(uint32_t x, uint32_t y, uint64_t side, uint32_t width, uint32_t height, const Visit& visit) {
+  if (x >= width || y >= height) return;
+  if (side == 1) return visit(x, y);
+  const auto half = static_cast<uint32_t>(side / 2);
+  for_each_in_z_order(x, y, half, width, height, visit);
+  for_each_in_z_order(x + half, y, half, width, height, visit);
+  for_each_in_z_order(x, y + half, half, width, height, visit);
+  for_each_in_z_order(x + half, y + half, half, width, height, visit);
 }
 
 /// A permutation of 32-bit words that scatters them (PCG's output function; Jarzynski and Olano, JCGT 2020).
@@ -113,7 +118,15 @@ Result<SharedCamera> read_camera(const std::string& path) {
                              numbers.size())};
   }
   const auto vec = [&](size_t i) { return Vec3d{numbers[i], numbers[i + 1], numbers[i + 2]}; };
-  return SharedCamera{vec(0), vec(3), vec(6), numbers[9], vec(10)};
+  const SharedCamera camera{vec(0), vec(3), vec(6), numbers[9], vec(10)};
+  const Vec3d view = camera.target - camera.position;
+  const bool sees = is_finite(view) && is_finite(camera.up) && is_finite(camera.light) && numbers[9] > 0 &&
+                    numbers[9] < 180 && length(cross(unit(view), unit(camera.up))) > 1e-6;
+  if (!sees) {
+    return Error{ErrorClass::usage, path,
+                 "the camera shows nothing: position and target differ, up is not along the view, 0 < fov < 180"};
+  }
+  return camera;
 }
 
 PrimaryRays primary_rays(const SharedCamera& camera, uint32_t width, uint32_t height) {
@@ -122,16 +135,13 @@ PrimaryRays primary_rays(const SharedCamera& camera, uint32_t width, uint32_t he
   const Vec3d right = unit(cross(forward, camera.up)), up = cross(right, forward);
   const double half = std::tan(camera.vertical_fov_degrees * 3.14159265358979323846 / 360.0);
   const double aspect = static_cast<double>(width) / height;
-  const uint64_t side = std::bit_ceil(std::max(width, height));
-  for (uint64_t code = 0; code < side * side; ++code) {
-    const uint32_t x = even_bits(code), y = even_bits(code >> 1);
-    if (x >= width || y >= height) continue;
+  for_each_in_z_order(0, 0, std::bit_ceil(std::max(width, height)), width, height, [&](uint32_t x, uint32_t y) {
     const double sx = ((x + 0.5) / width * 2 - 1) * half * aspect, sy = (1 - (y + 0.5) / height * 2) * half;
     const Vec3d d{forward.x + sx * right.x + sy * up.x, forward.y + sx * right.y + sy * up.y,
                   forward.z + sx * right.z + sy * up.z};
     out.pixels.push_back(y * width + x);
     out.rays.push_back(record(camera.position, unit(d), 1e30f));
-  }
+  });
   return out;
 }
 

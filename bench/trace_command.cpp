@@ -1,6 +1,7 @@
 // kdbench trace: rays against one object; from a file, or the shared ones made here from a camera. Its interface is how
 // the project is compared with anything else: keep it stable (bench/README.md).
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <memory>
@@ -44,18 +45,22 @@ Result<std::vector<render::RayRecord>> read_rays(const std::string& path) {
   return rays;
 }
 
+constexpr uint64_t kMostPixels = uint64_t{1} << 26;  // three classes of rays and their hits: 10 GiB
+
 struct Size {
   uint32_t width = 0, height = 0;
 };
 
 std::optional<Size> parse_size(const std::string& text) {
   Size size;
-  int used = 0;
-  if (std::sscanf(text.c_str(), "%ux%u%n", &size.width, &size.height, &used) != 2 ||
-      used != static_cast<int>(text.size()))
-    return {};
-  const auto usable = [](uint32_t side) { return side >= 1 && side <= 65536; };
-  return usable(size.width) && usable(size.height) ? std::optional(size) : std::nullopt;
+  const char* end = text.data() + text.size();
+  const auto width = std::from_chars(text.data(), end, size.width);
+  if (width.ec != std::errc{} || width.ptr == end || *width.ptr != 'x') return {};
+  const auto height = std::from_chars(width.ptr + 1, end, size.height);
+  if (height.ec != std::errc{} || height.ptr != end) return {};
+  const uint64_t pixels = uint64_t{size.width} * size.height;
+  const bool fits = size.width <= 65536 && size.height <= 65536 && pixels >= 1 && pixels <= kMostPixels;
+  return fits ? std::optional(size) : std::nullopt;
 }
 
 double median(std::vector<double> values) {
@@ -173,10 +178,12 @@ class TraceRun {
 Result<void> trace(const Options& o) {
   const ThreadLimit limit(o.threads);
   if (o.rays.empty() == o.camera.empty()) {
-    return Error{ErrorClass::usage, "", "name either a file of rays or --camera, not both (see kdbench trace --help)"};
+    return Error{ErrorClass::usage, "", "name a file of rays or --camera, one of the two (see kdbench trace --help)"};
   }
   const std::optional<Size> size = parse_size(o.size);
-  if (!size) return Error{ErrorClass::usage, "--size " + o.size, "not a size such as 1920x1080"};
+  if (!size)
+    return Error{ErrorClass::usage, "--size " + o.size, "not a size such as 1920x1080, of at most 2^26 pixels"};
+  if (auto usable = tools::check_outputs({o.hits, o.json}, {o.object, o.rays, o.camera}); !usable) return usable;
   auto device = render::choose_device(o.device);
   if (!device) return device.error();
   auto object = nkd::ObjectFile::open(o.object);
@@ -207,10 +214,12 @@ Command trace_command(CLI::App& app) {
       ->check(CLI::IsMember({"closest", "any"}))
       ->capture_default_str();
   c->add_option("--device", o->device, "auto, cpu, cuda or cuda:N")->capture_default_str();
-  c->add_option("--threads", o->threads, "CPU threads; 0: all cores")->capture_default_str();
-  c->add_option("--repeat", o->repeat, "Timed runs")->check(CLI::Range(1, 100000))->capture_default_str();
+  c->add_option("--threads", o->threads, "CPU threads; 0: all cores")
+      ->check(tools::whole_number(0, 4096))
+      ->capture_default_str();
+  c->add_option("--repeat", o->repeat, "Timed runs")->check(tools::whole_number(1, 100000))->capture_default_str();
   c->add_option("--warm-up", o->warm_ups, "Untimed runs before them")
-      ->check(CLI::Range(0, 1000))
+      ->check(tools::whole_number(0, 1000))
       ->capture_default_str();
   c->add_flag("--count", o->count_steps, "Count nodes, leaves and triangles a ray (CPU)");
   c->add_option("--hits", o->hits, "Write the hits: float t, int32 primitive, float u, v, 16 bytes each");

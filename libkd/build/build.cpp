@@ -7,8 +7,11 @@
 #include <utility>
 
 #include "build/clip.h"
+#include "build/context.h"
 #include "build/events.h"
+#include "build/small_cell.h"
 #include "build/split.h"
+#include "build/subtree.h"
 #include "sys/parallel.h"
 
 namespace kd::build {
@@ -29,12 +32,6 @@ struct Cell {
   uint32_t count() const { return static_cast<uint32_t>(triangles.size()); }
 };
 
-/// A subtree in a frame of its own: its root at 0, the filler at 1, pairs from 2.
-struct Subtree {
-  std::vector<Node> nodes{Node{}, Node{}};
-  std::vector<uint32_t> references;
-};
-
 /// Runs body(axis) for the three axes, at once if `parallel`.
 template <class Body>
 void for_each_axis(bool parallel, const Body& body) {
@@ -47,39 +44,19 @@ void for_each_axis(bool parallel, const Body& body) {
 
 class Builder {
  public:
-  Builder(const Lattice& lattice, std::span<const Vec3u> vertices, std::span<const std::array<uint32_t, 3>> triangles,
-          const BuildSettings& settings, const Progress& progress)
-      : step_(lattice.step()),
-        cube_(lattice.cube()),
-        vertices_(vertices),
-        triangles_(triangles),
-        costs_(settings.costs),
-        progress_(progress) {
-    const double automatic = 8 + 1.3 * std::log2(std::max<double>(1, static_cast<double>(triangles.size())));
-    max_depth_ =
-        std::min(settings.max_depth > 0 ? settings.max_depth : static_cast<int>(std::lround(automatic)), kMaxDepth);
-  }
+  Builder(const Context& context, const Progress& progress) : context_(context), progress_(progress) {}
 
-  Cell root() const;
+  Cell root(const Box3u& cube) const;
   void build(Cell cell, uint32_t slot, Subtree& out);
   bool cancelled() const { return cancelled_; }
 
  private:
-  LatticeTriangle corners(uint32_t triangle) const {
-    const auto& t = triangles_[triangle];
-    return {vertices_[t[0]], vertices_[t[1]], vertices_[t[2]]};
-  }
   Split choose_split(const Cell& cell) const;
   std::pair<Cell, Cell> divide(const Cell& cell, const Split& split) const;
-  void make_leaf_at(const Cell& cell, uint32_t slot, Subtree& out);
+  void build_small(const Cell& cell, uint32_t slot, Subtree& out) const;
   void report(double weight);
 
-  Vec3d step_;
-  Box3u cube_;
-  std::span<const Vec3u> vertices_;
-  std::span<const std::array<uint32_t, 3>> triangles_;
-  SahCosts costs_;
-  int max_depth_;
+  const Context& context_;
   const Progress& progress_;
   std::mutex progress_mutex_;
   double done_ = 0;      // guarded by progress_mutex_
@@ -87,15 +64,15 @@ class Builder {
   std::atomic<bool> cancelled_ = false;
 };
 
-Cell Builder::root() const {
+Cell Builder::root(const Box3u& cube) const {
   Cell cell;
-  cell.box = cube_;
-  const size_t n = triangles_.size();
+  cell.box = cube;
+  const size_t n = context_.triangles.size();
   cell.triangles.resize(n);
   std::vector<Box3u> boxes(n);
   for (uint32_t i = 0; i < n; ++i) {
     cell.triangles[i] = i;
-    boxes[i] = bounds(corners(i));
+    boxes[i] = bounds(context_.corners(i));
   }
   for_each_axis(n >= kParallelSweep, [&](int axis) {
     EventList& events = cell.events[static_cast<size_t>(axis)];
@@ -110,7 +87,7 @@ Split Builder::choose_split(const Cell& cell) const {
   std::array<Split, 3> candidates;
   for_each_axis(cell.count() >= kParallelSweep, [&](int axis) {
     const auto a = static_cast<size_t>(axis);
-    candidates[a] = best_split(cell.events[a], axis, cell.box, cell.count(), step_, costs_);
+    candidates[a] = best_split(cell.events[a], axis, cell.box, cell.count(), context_.step, context_.costs);
   });
   return std::min({candidates[0], candidates[1], candidates[2]}, better);
 }
@@ -175,7 +152,7 @@ std::pair<Cell, Cell> Builder::divide(const Cell& cell, const Split& split) cons
       if (side[i] != wanted && side[i] != both) continue;
       const uint32_t number = child.count();
       if (side[i] == both) {
-        const auto box = clipped_bounds(corners(cell.triangles[i]), child.box);
+        const auto box = clipped_bounds(context_.corners(cell.triangles[i]), child.box);
         if (!box) continue;
         share.clipped.emplace_back(number, *box);
       }
@@ -200,28 +177,31 @@ std::pair<Cell, Cell> Builder::divide(const Cell& cell, const Split& split) cons
   return children;
 }
 
-void Builder::make_leaf_at(const Cell& cell, uint32_t slot, Subtree& out) {
-  out.nodes[slot] = make_leaf(static_cast<uint32_t>(out.references.size()), cell.count());
-  out.references.insert(out.references.end(), cell.triangles.begin(), cell.triangles.end());
-}
-
-/// Puts `part`'s root into `slot` and its rest behind what `out` holds already.
-void append_subtree(const Subtree& part, uint32_t slot, Subtree& out) {
-  const auto node_shift = static_cast<uint32_t>(out.nodes.size()) - 2;
-  const auto reference_shift = static_cast<uint32_t>(out.references.size());
-  const auto moved = [&](Node n) {
-    return is_leaf(n) ? Node{n.word + reference_shift, n.link} : Node{n.word, n.link + (node_shift << 2)};
-  };
-  out.nodes[slot] = moved(part.nodes[0]);
-  for (size_t i = 2; i < part.nodes.size(); ++i) out.nodes.push_back(moved(part.nodes[i]));
-  out.references.insert(out.references.end(), part.references.begin(), part.references.end());
+/// Leaves event lists behind: the boxes they describe are all that small cells need.
+void Builder::build_small(const Cell& cell, uint32_t slot, Subtree& out) const {
+  std::vector<BoxedTriangle> stack(cell.count());
+  for (uint32_t i = 0; i < cell.count(); ++i) stack[i].triangle = cell.triangles[i];
+  for (int axis = 0; axis < 3; ++axis) {
+    for (Event e : cell.events[static_cast<size_t>(axis)]) {
+      Box3u& box = stack[triangle_of(e)].box;
+      if (kind_of(e) != EventKind::end) box.lo.set(axis, plane_of(e));
+      if (kind_of(e) != EventKind::start) box.hi.set(axis, plane_of(e));
+    }
+  }
+  build_small_cell(context_, cell.box, cell.depth, stack, 0, slot, out);
 }
 
 void Builder::build(Cell cell, uint32_t slot, Subtree& out) {
   if (cancelled_) return;
-  const Split split = cell.count() > 0 && cell.depth < max_depth_ ? choose_split(cell) : Split{};
-  if (split.cost >= costs_.intersection * cell.count()) {
-    make_leaf_at(cell, slot, out);
+  if (cell.count() <= kSmallCell) {
+    build_small(cell, slot, out);
+    report(cell.weight);
+    return;
+  }
+  const Split split = cell.depth < context_.max_depth ? choose_split(cell) : Split{};
+  if (split.cost >= context_.leaf_cost(cell.count())) {
+    out.nodes[slot] = make_leaf(static_cast<uint32_t>(out.references.size()), cell.count());
+    out.references.insert(out.references.end(), cell.triangles.begin(), cell.triangles.end());
     report(cell.weight);
     return;
   }
@@ -229,19 +209,22 @@ void Builder::build(Cell cell, uint32_t slot, Subtree& out) {
   std::pair<Cell, Cell> children = divide(cell, split);
   const bool parallel = cell.count() >= kParallelSubtree;
   cell = {};
-  const auto pair = static_cast<uint32_t>(out.nodes.size());
-  out.nodes.resize(out.nodes.size() + 2);
-  out.nodes[slot] = make_inner(split.axis, split.plane, pair);
+  const uint32_t pair = out.open_inner(slot, split.axis, split.plane);
   if (parallel) {
     Subtree below_part, above_part;
     parallel_tasks([&] { build(std::move(children.first), 0, below_part); },
                    [&] { build(std::move(children.second), 0, above_part); });
-    append_subtree(below_part, pair, out);
-    append_subtree(above_part, pair + 1, out);
+    out.append(below_part, pair);
+    out.append(above_part, pair + 1);
   } else {
     build(std::move(children.first), pair, out);
     build(std::move(children.second), pair + 1, out);
   }
+}
+
+int depth_limit(const BuildSettings& settings, size_t triangles) {
+  const double automatic = 8 + 1.3 * std::log2(std::max<double>(1, static_cast<double>(triangles)));
+  return std::min(settings.max_depth > 0 ? settings.max_depth : static_cast<int>(std::lround(automatic)), kMaxDepth);
 }
 
 void Builder::report(double weight) {
@@ -258,10 +241,11 @@ void Builder::report(double weight) {
 Result<Tree> build_tree(const Lattice& lattice, std::span<const Vec3u> vertices,
                         std::span<const std::array<uint32_t, 3>> triangles, const BuildSettings& settings,
                         const Progress& progress) {
-  Builder builder(lattice, vertices, triangles, settings, progress);
+  const Context context{vertices, triangles, lattice.step(), settings.costs, depth_limit(settings, triangles.size())};
+  Builder builder(context, progress);
   Subtree whole;
-  builder.build(builder.root(), 0, whole);
-  if (builder.cancelled()) return Error{ErrorClass::interrupted, "", "building the tree was cancelled"};
+  builder.build(builder.root(lattice.cube()), 0, whole);
+  if (builder.cancelled()) return Error{ErrorClass::interrupted, "", "interrupted"};
   if (whole.nodes.size() > kMaxLink || whole.references.size() > 0xffffffffu) {
     return Error{ErrorClass::resource, "",
                  "the tree outgrows what a node can address (2^30 nodes, 2^32 references): split the mesh"};

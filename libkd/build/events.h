@@ -15,14 +15,18 @@ namespace kd::build {
 
 enum class EventKind : uint8_t { end = 0, flat = 1, start = 2 };
 
+using EventPlace = uint32_t;
 using Event = uint64_t;
 using EventList = std::vector<Event>;
 
+constexpr EventPlace make_place(uint32_t plane, EventKind kind) { return plane << 2 | static_cast<uint8_t>(kind); }
 constexpr Event make_event(uint32_t plane, EventKind kind, uint32_t triangle) {
-  return uint64_t{plane} << 34 | uint64_t{static_cast<uint8_t>(kind)} << 32 | triangle;
+  return uint64_t{make_place(plane, kind)} << 32 | triangle;
 }
-constexpr uint32_t plane_of(Event e) { return static_cast<uint32_t>(e >> 34); }
-constexpr EventKind kind_of(Event e) { return static_cast<EventKind>(e >> 32 & 3); }
+constexpr uint32_t plane_of(EventPlace p) { return p >> 2; }
+constexpr EventKind kind_of(EventPlace p) { return static_cast<EventKind>(p & 3); }
+constexpr uint32_t plane_of(Event e) { return plane_of(static_cast<EventPlace>(e >> 32)); }
+constexpr EventKind kind_of(Event e) { return kind_of(static_cast<EventPlace>(e >> 32)); }
 constexpr uint32_t triangle_of(Event e) { return static_cast<uint32_t>(e); }
 /// The same event of a triangle with another number.
 constexpr Event renumbered(Event e, uint32_t triangle) { return (e >> 32) << 32 | triangle; }

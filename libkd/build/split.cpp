@@ -24,10 +24,9 @@ class PlaneProbability {
   double per_length_;  // of the sides, per unit of length along the axis
 };
 
-}  // namespace
-
-Split best_split(std::span<const Event> events, int axis, const Box3u& cell, uint32_t count, Vec3d step,
-                 const SahCosts& costs) {
+template <class EventOrPlace>
+Split sweep(std::span<const EventOrPlace> events, int axis, const Box3u& cell, uint32_t count, Vec3d step,
+            const SahCosts& costs) {
   Split best;
   const uint32_t lo = cell.lo[axis], hi = cell.hi[axis];
   if (lo == hi) return best;
@@ -60,6 +59,18 @@ Split best_split(std::span<const Event> events, int axis, const Box3u& cell, uin
     left += starts + flats;
   }
   return best;
+}
+
+}  // namespace
+
+Split best_split(std::span<const Event> events, int axis, const Box3u& cell, uint32_t count, Vec3d step,
+                 const SahCosts& costs) {
+  return sweep(events, axis, cell, count, step, costs);
+}
+
+Split best_split(std::span<const EventPlace> places, int axis, const Box3u& cell, uint32_t count, Vec3d step,
+                 const SahCosts& costs) {
+  return sweep(places, axis, cell, count, step, costs);
 }
 
 }  // namespace kd::build

@@ -24,9 +24,12 @@ inline bool better(const Split& a, const Split& b) {
   return a.axis != b.axis ? a.axis < b.axis : a.plane < b.plane;
 }
 
-/// The cheapest split of `cell` along `axis`, whose `count` triangles have these sorted events; infinite cost if none
-/// makes progress. `step` is the lattice's, in model units: areas are measured where rays are.
+/// The cheapest split of `cell` along `axis`, whose `count` triangles have these sorted events, or only the events'
+/// places; infinite cost if none makes progress. `step` is the lattice's, in model units: areas are measured where rays
+/// are.
 Split best_split(std::span<const Event> events, int axis, const Box3u& cell, uint32_t count, Vec3d step,
+                 const SahCosts& costs);
+Split best_split(std::span<const EventPlace> places, int axis, const Box3u& cell, uint32_t count, Vec3d step,
                  const SahCosts& costs);
 
 }  // namespace kd::build

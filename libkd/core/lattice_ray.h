@@ -9,8 +9,9 @@
 //   - v - origin is exact in float32 for every lattice point v (24 bits, whatever their difference), and
 //   - the coordinates of v sheared along the ray, (v - origin) - direction * s(v), are exact in double (48 bits).
 // What snapping costs: the origin's plane along k is chosen on the grid and the ray evaluated there in double, so the
-// ray moves only sideways, by at most half a grid step an axis at the origin (2^-25 of the cube) and, from the rounding
-// of the direction, as much again at the far side of the cube.
+// ray moves only sideways: by at most half a grid step an axis at the origin (2^-25 of the cube) and, from the rounding
+// of the direction, as much again at the far side of the cube. One exception: at 24 bits a ray that enters through a
+// face along k may move by a whole step, because no float32 difference holds an origin farther outside the cube.
 #pragma once
 
 #include "core/arithmetic.h"
@@ -21,13 +22,13 @@
 namespace kd {
 
 struct LatticeRay {
-  Vec3f origin;     // lattice steps, within one grid step of the cube
+  Vec3f origin;     // lattice steps, within one of the cube
   Vec3f direction;  // lattice steps per unit of s; the component along `axis` is 1 or -1
   Vec3f inverse;    // 1 / direction, rounded; kParallel where a component is 0
   int axis = 0;
   float s_min = 0;  // the ray's own interval, >= 0
   float s_max = 0;
-  float s_exit = 0;  // where the ray has left the cube, rounded up
+  float s_exit = 0;  // where the ray as snapped has left the cube, rounded up
   double t_base = 0;
   double t_scale = 1;
 
@@ -38,6 +39,17 @@ struct LatticeRay {
 /// then at distance 0: it counts as just past the plane, on the side of higher coordinates, which is also where the tie
 /// rule of the triangle test moves it (`core/triangle.h`).
 constexpr float kParallel = 1152921504606846976.0f;  // 2^60
+
+/// Where the snapped ray leaves the cube [0, top]^3, rounded up; negative if it never is inside. Computed from what was
+/// snapped: differences are exact, so it is right however far away the ray came from.
+KD_HD KD_INLINE float exit_distance(const LatticeRay& ray, double top) {
+  double s = 1e30;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double d = ray.direction[axis];
+    if (d != 0) s = min_of(s, ((d > 0 ? top : 0.0) - ray.origin[axis]) / d);
+  }
+  return static_cast<float>(s) * (s > 0 ? 1 + 0x1p-22f : 1.0f);
+}
 
 /// Takes a ray that is already in lattice space onto the grid. `o` and `d` are in lattice steps; they may be anything,
 /// far away and NaN included. False: the ray has no point in the cube within [t_min, t_max], or is not a ray.
@@ -51,17 +63,15 @@ KD_HD inline bool snap_ray(Vec3d o, Vec3d d, double t_min, double t_max, int bit
   const double grid = 1.0 / static_cast<double>(1u << (kMaxLatticeBits - bits));
   const double top = lattice_max(bits);
 
-  // Clip to the cube, widened on every side by more than snapping can move the ray: one that touches the cube after it
-  // is never lost here, and s_exit is never too early.
-  const double margin = 2 * grid;
+  // Where the ray enters the cube, widened by a grid step on every side: snapping may bring it that much nearer.
   double t_enter = t_min, t_exit = t_max;
   for (int axis = 0; axis < 3; ++axis) {
     const double oa = o[axis], da = d[axis];
     if (da != 0) {
-      const double t0 = (-margin - oa) / da, t1 = (top + margin - oa) / da;
+      const double t0 = (-grid - oa) / da, t1 = (top + grid - oa) / da;
       t_enter = max_of(t_enter, min_of(t0, t1));
       t_exit = min_of(t_exit, max_of(t0, t1));
-    } else if (oa < -margin || oa > top + margin) {
+    } else if (oa < -grid || oa > top + grid) {
       return false;
     }
   }
@@ -74,7 +84,7 @@ KD_HD inline bool snap_ray(Vec3d o, Vec3d d, double t_min, double t_max, int bit
   const double t_base = (plane - ok) / dk;
   const auto place = [&](double oa, double da, bool along) {
     const double p = std::rint((oa + t_base * da) / grid) * grid;
-    return static_cast<float>(along ? plane : min_of(max_of(p, -grid), top + grid));
+    return static_cast<float>(along ? plane : min_of(max_of(p, -1.0), top + 1));
   };
   ray.origin = {place(o.x, d.x, k == 0), place(o.y, d.y, k == 1), place(o.z, d.z, k == 2)};
 
@@ -88,7 +98,7 @@ KD_HD inline bool snap_ray(Vec3d o, Vec3d d, double t_min, double t_max, int bit
   ray.t_scale = 1 / speed;
   ray.s_min = static_cast<float>(max_of((t_min - t_base) * speed, 0.0));
   ray.s_max = static_cast<float>(min_of((t_max - t_base) * speed, 1e30));
-  ray.s_exit = static_cast<float>((t_exit - t_base) * speed) * (1 + 0x1p-20f);
+  ray.s_exit = exit_distance(ray, top);
   return ray.s_exit >= 0;
 }
 

@@ -68,6 +68,7 @@ Result<ObjectFile> ObjectFile::open(const std::string& path) {
   o.summary_ = read_summary(*o.object_);
   o.geometry_ = read_geometry(*o.object_);
   if (auto f = check_summary(o.summary_)) return unsound(path, *f);
+  if (auto f = check_header_checksum(*o.object_)) return unsound(path, *f);
   if (auto f = check_geometry_checksums(*o.object_, o.geometry_)) return unsound(path, *f);
   if (auto f = check_nodes(o.geometry_, o.summary_.lattice.bits)) return unsound(path, *f);
   if (auto f = check_indices(o.geometry_, o.summary_.lattice.bits)) return unsound(path, *f);

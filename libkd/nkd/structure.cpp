@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "nkd/header.h"
 #include "sys/hash.h"
 
 namespace kd::nkd {
@@ -46,6 +47,7 @@ Check check_container(std::span<const std::byte> bytes) {
   const auto* data = reinterpret_cast<const uint8_t*>(bytes.data());
   constexpr size_t kHeader = 16;
   if (bytes.size() < kHeader || !nkd_schema::ObjectBufferHasIdentifier(data)) return found(Issue::not_nkd);
+  if (bytes.size() >= FLATBUFFERS_MAX_BUFFER_SIZE) return found(Issue::offsets, "2 GiB or more, which no .nkd has");
   flatbuffers::Verifier verifier(data, bytes.size(), 8, 16, true);
   if (!nkd_schema::VerifyObjectBuffer(verifier)) return found(Issue::offsets);
   const nkd_schema::Object& o = *nkd_schema::GetObject(data);
@@ -54,6 +56,7 @@ Check check_container(std::span<const std::byte> bytes) {
   }
   const auto absent = [](const auto* member) { return member == nullptr; };
   if (absent(o.origin()) || absent(o.extent()) || absent(o.checksums()) || absent(o.tree()) || absent(o.provenance()) ||
+      absent(o.nodes()) || absent(o.references()) || absent(o.triangles()) || absent(o.vertices()) ||
       o.nodes()->size() == 0 || o.triangles()->size() == 0 || o.vertices()->size() == 0) {
     return found(Issue::missing_section);
   }
@@ -61,6 +64,9 @@ Check check_container(std::span<const std::byte> bytes) {
       misaligned(o.source_primitives()) || misaligned(o.normals()) || misaligned(o.normal_indices()) ||
       misaligned(o.materials()) || misaligned(o.material_ids())) {
     return found(Issue::alignment);
+  }
+  if (o.file_bytes() != bytes.size()) {
+    return found(Issue::file_size, fmt::format("{} bytes, and it says {}", bytes.size(), o.file_bytes()));
   }
   return std::nullopt;
 }
@@ -170,6 +176,11 @@ template Check check_checksum(std::span<const uint16_t>, uint64_t, const char*);
 template Check check_checksum(std::span<const Node>, uint64_t, const char*);
 template Check check_checksum(std::span<const Vec3f>, uint64_t, const char*);
 template Check check_checksum(std::span<const Material>, uint64_t, const char*);
+
+Check check_header_checksum(const nkd_schema::Object& object) {
+  if (header_checksum(object) == object.header_checksum()) return std::nullopt;
+  return found(Issue::header_checksum);
+}
 
 Check check_geometry_checksums(const nkd_schema::Object& object, const Geometry& geometry) {
   const nkd_schema::Checksums& sums = *object.checksums();

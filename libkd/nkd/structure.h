@@ -24,6 +24,7 @@ Check check_source_primitives(const Attributes& attributes, size_t triangle_coun
 Check check_normals(const Attributes& attributes, size_t triangle_count);
 Check check_materials(const Attributes& attributes, size_t triangle_count);
 
+Check check_header_checksum(const nkd_schema::Object& object);
 Check check_geometry_checksums(const nkd_schema::Object& object, const Geometry& geometry);
 /// `name` is the section's, for the message.
 template <class T>

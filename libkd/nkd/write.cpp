@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "nkd/header.h"
 #include "nkd/schema.h"
 #include "sys/atomic_file.h"
 #include "sys/hash.h"
@@ -99,8 +100,13 @@ Result<uint64_t> write_object(const std::string& path, const Summary& summary, c
   object.add_checksums(&checksums);
   object.add_tree(&tree);
   object.add_provenance(provenance);
+  object.add_file_bytes(1);  // both known only once the file is; a default would take no place
+  object.add_header_checksum(1);
   nkd_schema::FinishObjectBuffer(builder, object.Finish());
 
+  nkd_schema::Object* finished = nkd_schema::GetMutableObject(builder.GetBufferPointer());
+  finished->mutate_file_bytes(builder.GetSize());
+  finished->mutate_header_checksum(header_checksum(*finished));
   const auto bytes = std::as_bytes(std::span(builder.GetBufferPointer(), builder.GetSize()));
   if (auto written = write_file(path, bytes); !written) return written.error();
   return bytes.size();

@@ -59,11 +59,12 @@ struct Objects {
   }
 };
 
-/// stage(pixel) for every pixel; returns the sum of what the calls return.
+/// stage(pixel) for every pixel; returns the sum of what the calls return. Ends early once `progress` is cancelled.
 template <class Stage>
-uint64_t for_each_pixel(const Stage& stage, size_t pixels) {
+uint64_t for_each_pixel(const Stage& stage, size_t pixels, SharedProgress& progress, double share) {
   std::atomic<uint64_t> total = 0;
   parallel_ranges(pixels, kPixelGrain, [&](size_t begin, size_t end) {
+    if (!progress.keep_going(share)) return;
     uint64_t count = 0;
     for (size_t pixel = begin; pixel < end; ++pixel) count += stage(static_cast<uint32_t>(pixel));
     total += count;
@@ -118,13 +119,19 @@ Result<Frame> cpu_render(const LoadedScene& scene, const RenderSettings& setting
 
   const PipelinePlan plan{static_cast<uint32_t>(scene.lights.size()), targets, settings.preview,
                           settings.gamma_on_film};
+  SharedProgress progress(settings.progress);
+  size_t launched = 0;
   Timer whole;
-  run_pipeline(frame, plan, [&](const auto& stage) {
+  const auto launch = [&](const auto& stage) {
     Timer stage_timer;
-    const uint64_t count = for_each_pixel(stage, pixels);
+    const double share = static_cast<double>(launched++) / static_cast<double>(plan.launches());
+    const uint64_t count = for_each_pixel(stage, pixels, progress, share);
     add_stage_time(out.stats, stage.kName, stage_timer.seconds());
     add_stage_count(out.stats, stage.kName, count);
-  });
+    return count;
+  };
+  run_pipeline(frame, plan, launch, launch);
+  if (progress.cancelled()) return Error{ErrorClass::interrupted, "", "interrupted"};
   out.stats.render_seconds = whole.seconds();
   return out;
 }

@@ -23,16 +23,21 @@ struct PipelinePlan {
   std::span<const AovTarget> aovs;
   bool gamma_on_preview = false;
   bool gamma_on_film = false;
+
+  /// How many launches there are if some ray hits something.
+  size_t launches() const { return 3 + 2 * light_count + aovs.size() + gamma_on_preview + gamma_on_film; }
 };
 
-/// Launches the stages in order. `launch(stage)` runs stage(pixel) for every pixel and may return before it is done;
-/// the next stage starts after it.
-template <class Launch>
-void run_pipeline(const FrameView& frame, const PipelinePlan& plan, Launch&& launch) {
+/// Launches the stages that have work, in order. `launch(stage)` runs stage(pixel) for every pixel and may return
+/// before it is done; the next stage starts after it. `launch_and_count(stage)` waits, and returns the sum of what the
+/// calls returned: where no ray hits anything, nothing follows that reads a surface.
+template <class Launch, class LaunchAndCount>
+void run_pipeline(const FrameView& frame, const PipelinePlan& plan, Launch&& launch,
+                  LaunchAndCount&& launch_and_count) {
   launch(RayGeneration{frame});
-  launch(ObjectIntersection{frame});  // and intersection reduction, hit by hit
+  const uint64_t hits = launch_and_count(ObjectIntersection{frame});  // and intersection reduction, hit by hit
   launch(Ambient{frame});
-  for (uint32_t light = 0; light < plan.light_count; ++light) {
+  for (uint32_t light = 0; light < plan.light_count && hits > 0; ++light) {
     launch(Shadow{frame, light});
     launch(Colour{frame, light});
   }

@@ -33,7 +33,8 @@ AtomicFile::~AtomicFile() {
 Result<AtomicFile> AtomicFile::create(const std::string& path) {
   struct stat status {};
   if (::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode)) {
-    return Error{ErrorClass::output, path, "cannot write: the name is taken by something that is not a file"};
+    return Error{ErrorClass::output, path,
+                 S_ISDIR(status.st_mode) ? "cannot write: it is a folder" : "cannot write: it is not a regular file"};
   }
   std::string temporary = path + ".XXXXXX";
   const int descriptor = ::mkstemp(temporary.data());
@@ -53,6 +54,12 @@ Result<void> AtomicFile::commit() {
   ::close(descriptor);
   if (!flushed || ::rename(temporary_.c_str(), path_.c_str()) != 0) return output_error(path_, "write");
   temporary_.clear();
+  return {};
+}
+
+Result<void> check_writable(const std::string& path) {
+  auto file = AtomicFile::create(path);
+  if (!file) return file.error();
   return {};
 }
 

@@ -15,7 +15,7 @@ namespace kd {
 class AtomicFile {
  public:
   /// Claims the temporary name. ErrorClass::output if the folder does not exist or cannot be written to, or `path`
-  /// names a folder; so a tool can find out before it works for minutes.
+  /// names something else than a file.
   static Result<AtomicFile> create(const std::string& path);
 
   AtomicFile(AtomicFile&& other) noexcept;
@@ -32,6 +32,9 @@ class AtomicFile {
   std::string path_;
   std::string temporary_;  // empty once committed or moved from
 };
+
+/// Whether `path` could be written now, as AtomicFile::create would say: for finding out before working for minutes.
+Result<void> check_writable(const std::string& path);
 
 /// All of `bytes` as the file `path`, atomically.
 Result<void> write_file(const std::string& path, std::span<const std::byte> bytes);

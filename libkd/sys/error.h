@@ -7,7 +7,8 @@
 
 namespace kd {
 
-/// The numbers are the tools' exit statuses and part of their interface. 1 is left to faults of our own, such as an exception that nothing caught.
+/// The numbers are the tools' exit statuses and part of their interface. 1 is left to faults of our own, such as an
+/// exception that nothing caught.
 enum class ErrorClass {
   usage = 2,        // a flag or an argument that cannot be
   missing = 3,      // an input that does not exist or cannot be read

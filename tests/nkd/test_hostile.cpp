@@ -56,6 +56,15 @@ TEST_CASE("nkd: cut off at any length") {
   }
 }
 
+TEST_CASE("nkd: larger than a FlatBuffer can be") {
+  const TempFolder folder;
+  const Contents c(soup_shape(12, 12, Soup::mixed, 2), 12);
+  const std::string path = c.write(folder.file("a.nkd"));
+  std::filesystem::resize_file(path, uint64_t{1} << 31);  // a hole behind the object
+  const auto file = nkd::ObjectFile::open(path);
+  if (file) CHECK(file->check_attributes().empty());
+}
+
 TEST_CASE("nkd: any byte changed") {
   const TempFolder folder;
   for (const int bits : {12, 24}) {

@@ -1,12 +1,16 @@
 #include "common/console.h"
 
 #include <atomic>
+#include <charconv>
 #include <csignal>
 #include <cstdio>
+#include <filesystem>
 #include <new>
 
 #include <fmt/format.h>
 #include <unistd.h>
+
+#include "sys/atomic_file.h"
 
 namespace kd::tools {
 
@@ -46,23 +50,101 @@ int fail(std::string_view tool, const Error& error) {
   return static_cast<int>(error.error_class);
 }
 
+void warn(std::string_view tool, const std::string& text) {
+  fmt::print(stderr, "{}: warning: {}\n", tool, one_line(text));
+}
+
+CLI::Validator whole_number(int64_t lo, int64_t hi) {
+  const auto check = [lo, hi](std::string& text) -> std::string {
+    int64_t value = 0;
+    const auto parsed = std::from_chars(text.data(), text.data() + text.size(), value);
+    const bool fits = parsed.ec == std::errc{} && parsed.ptr == text.data() + text.size() && value >= lo && value <= hi;
+    return fits ? "" : fmt::format("'{}' is not a whole number from {} to {}", text, lo, hi);
+  };
+  return CLI::Validator(check, fmt::format("[{} - {}]", lo, hi));
+}
+
+CLI::Validator number(double lo, double hi) {
+  const auto check = [lo, hi](std::string& text) -> std::string {
+    double value = 0;
+    const auto parsed = std::from_chars(text.data(), text.data() + text.size(), value);
+    const bool fits = parsed.ec == std::errc{} && parsed.ptr == text.data() + text.size() && value >= lo && value <= hi;
+    return fits ? "" : fmt::format("'{}' is not a number from {} to {}", text, lo, hi);
+  };
+  return CLI::Validator(check, fmt::format("[{} - {}]", lo, hi));
+}
+
+CLI::Validator file_name() {
+  return CLI::Validator([](std::string& text) -> std::string { return text.empty() ? "needs a file name" : ""; }, "");
+}
+
+Result<void> check_outputs(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs) {
+  const auto same = [](const std::string& a, const std::string& b) {
+    std::error_code none;
+    if (std::filesystem::equivalent(a, b, none)) return true;
+    return std::filesystem::weakly_canonical(a, none) == std::filesystem::weakly_canonical(b, none);
+  };
+  for (size_t i = 0; i < outputs.size(); ++i) {
+    const std::string& output = outputs[i];
+    if (output.empty() || output == "-") continue;
+    for (const std::string& input : inputs) {
+      if (same(output, input))
+        return Error{ErrorClass::usage, output, "the output is also an input: name another file"};
+    }
+    for (size_t j = 0; j < i; ++j) {
+      if (same(output, outputs[j]))
+        return Error{ErrorClass::usage, output, "two outputs have this name: name another file"};
+    }
+    if (auto writable = check_writable(output); !writable) return writable;
+  }
+  return {};
+}
+
+namespace {
+
+/// What CLI11 found wrong, and where to read on. Its own text for a word that is no command names no word.
+Error usage_error(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
+  const auto parsed = app.get_subcommands();
+  const std::string help = app.get_name() + (parsed.empty() ? "" : " " + parsed.front()->get_name()) + " --help";
+  const auto commands = app.get_subcommands([](const CLI::App*) { return true; });
+  if (!commands.empty() && parsed.empty() && argc > 1 && argv[1][0] != '-') {
+    std::vector<std::string> names;
+    for (const CLI::App* command : commands) names.push_back(command->get_name());
+    return {ErrorClass::usage, "",
+            fmt::format("'{}' is not a command: use {} (see {})", argv[1], fmt::join(names, ", "), help)};
+  }
+  return {ErrorClass::usage, "", fmt::format("{} (see {})", one_line(error.what()), help)};
+}
+
+/// What was printed may still be in a buffer, and the disk full.
+int flushed(std::string_view tool, int status) {
+  if (std::fflush(stdout) == 0 && !std::ferror(stdout)) return status;
+  const int failed = fail(tool, {ErrorClass::output, "stdout", "cannot write all of the output"});
+  return status != 0 ? status : failed;
+}
+
+}  // namespace
+
 int run_tool(CLI::App& app, int argc, char** argv, const std::function<int()>& run) {
   const std::string tool = app.get_name();
   if (!processor_suffices()) {
     return fail(tool,
                 {ErrorClass::device, "", "this processor lacks AVX2, FMA or BMI2 (x86-64-v3), which this build uses"});
   }
+  std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit is then an error like any other
   app.footer(exit_status_text());
+  for (CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    command->footer(exit_status_text());
   app.set_version_flag("--version", version_text());
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& request) {  // --help, --version
     return app.exit(request);
   } catch (const CLI::ParseError& e) {
-    return fail(tool, {ErrorClass::usage, "", one_line(e.what()) + fmt::format(" (see {} --help)", tool)});
+    return fail(tool, usage_error(app, e, argc, argv));
   }
   try {
-    return run();
+    return flushed(tool, run());
   } catch (const std::bad_alloc&) {
     return fail(tool, {ErrorClass::resource, "", "out of memory"});
   } catch (const std::exception& e) {
@@ -84,8 +166,10 @@ Progress progress_bar(std::string label, bool quiet) {
 
 void catch_interrupts() {
   const auto note = [](int) { interrupt_seen = true; };
-  std::signal(SIGINT, note);
-  std::signal(SIGTERM, note);
+  struct sigaction action {};
+  action.sa_handler = note;  // and no SA_RESTART: a call that waits returns
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
 }
 
 bool interrupted() { return interrupt_seen; }

@@ -3,11 +3,12 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
-#include "sys/error.h"
 #include "sys/progress.h"
+#include "sys/result.h"
 
 namespace kd::tools {
 
@@ -18,6 +19,16 @@ std::string exit_status_text();
 
 /// Prints "tool: error: ..." as one line to stderr and returns the status to exit with.
 int fail(std::string_view tool, const Error& error);
+/// Prints "tool: warning: ..." as one line to stderr.
+void warn(std::string_view tool, const std::string& text);
+
+/// Checks of an option's value that say what is wanted: a number in [lo, hi] (NaN is not), a name that is not empty.
+CLI::Validator whole_number(int64_t lo, int64_t hi);
+CLI::Validator number(double lo, double hi);
+CLI::Validator file_name();
+
+/// That no output is an input or another output, and that each can be written; empty names and "-" are passed over.
+Result<void> check_outputs(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs);
 
 /// Runs a command line: checks the processor, parses, calls `run`, and turns what CLI11 or anything else throws into a
 /// line and a status.

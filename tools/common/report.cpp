@@ -9,7 +9,7 @@
 namespace kd::tools {
 
 Result<void> write_report(const std::string& path, const Json& report) {
-  const std::string text = report.dump(2) + "\n";
+  const std::string text = report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   if (path != "-") return write_file(path, text);
   fmt::print("{}", text);
   return {};

@@ -101,13 +101,16 @@ void print_report(const Options& options, const CompileReport& r) {
 int run(const Options& options) {
   const ThreadLimit limit(options.threads);
   catch_interrupts();
+  if (auto usable = check_outputs({options.output, options.stats}, {options.input}); !usable) {
+    return fail(kKdbuild, usable.error());
+  }
   const std::string name = std::filesystem::path(options.input).filename().string();
   const Progress progress = progress_bar(fmt::format("building {}", name), options.quiet);
   auto report = compile(options.input, options.output, options.settings, progress);
   keep_going(progress, 1);
   if (!report) return fail(kKdbuild, report.error());
   for (const std::string& warning : report->warnings) {
-    fmt::print(stderr, "{}: warning: {}: {}\n", kKdbuild, options.input, warning);
+    warn(kKdbuild, options.input + ": " + warning);
   }
   if (!options.quiet && options.stats != "-") print_report(options, *report);
   if (!options.stats.empty()) {
@@ -123,14 +126,16 @@ Command build_command(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::App* c = app.add_subcommand("build", "Compile a mesh to an object");
   c->add_option("input", options->input, "Mesh: " + mesh::supported_formats())->required();
-  c->add_option("-o,--output", options->output, "The .nkd to write")->required();
+  c->add_option("-o,--output", options->output, "The .nkd to write")->required()->check(file_name());
   c->add_option("--bits", options->settings.bits, "Bits of the lattice an axis")
-      ->check(CLI::Range(kMinLatticeBits, kMaxLatticeBits))
+      ->check(whole_number(kMinLatticeBits, kMaxLatticeBits))
       ->capture_default_str();
   c->add_flag("--ambient-from-diffuse", options->settings.ambient_from_diffuse,
               "Take a material's ambient colour from its diffuse one, whatever the MTL's Ka says");
   c->add_option("--stats", options->stats, "Write a JSON report to this file, or to stdout (-)");
-  c->add_option("--threads", options->threads, "Threads to use; 0: all cores")->capture_default_str();
+  c->add_option("--threads", options->threads, "Threads to use; 0: all cores")
+      ->check(whole_number(0, 4096))
+      ->capture_default_str();
   c->add_flag("--quiet", options->quiet, "Print nothing but errors and warnings");
   return {c, [options] { return run(*options); }};
 }

@@ -8,7 +8,6 @@
 #include "mesh/normalise.h"
 #include "mesh/read_mesh.h"
 #include "nkd/write.h"
-#include "sys/atomic_file.h"
 #include "sys/hash.h"
 #include "sys/mapped_file.h"
 #include "sys/timer.h"
@@ -71,12 +70,6 @@ Result<CompileReport> compile(const std::string& input, const std::string& outpu
                               const Progress& progress) {
   CompileReport report;
   Timer timer;
-  std::error_code none;
-  if (std::filesystem::equivalent(input, output, none)) {
-    return Error{ErrorClass::usage, output, "the output is the input: name another file"};
-  }
-  // An output that cannot be written is found out before the work, not after it.
-  if (auto writable = AtomicFile::create(output); !writable) return writable.error();
   auto mesh = mesh::read_mesh(input, {settings.ambient_from_diffuse});
   if (!mesh) return mesh.error();
   auto source_hash = hash_file(input);
@@ -84,12 +77,15 @@ Result<CompileReport> compile(const std::string& input, const std::string& outpu
   report.warnings = mesh->warnings;
   report.source_triangles = mesh->triangles.size();
   report.seconds.read = timer.lap();
+  if (!keep_going(progress, 0)) return Error{ErrorClass::interrupted, input, "interrupted"};
 
   report.clean = mesh::clean(*mesh);
   report.topology = mesh::topology(*mesh);
   report.seconds.clean = timer.lap();
   if (mesh->triangles.empty()) {
-    return Error{ErrorClass::mesh, input, fmt::format("none of its {} triangles has an area", report.source_triangles)};
+    return Error{ErrorClass::mesh, input,
+                 fmt::format("nothing is left of its {} triangles: {} have a coordinate that is not finite, {} no area",
+                             report.source_triangles, report.clean.non_finite.count, report.clean.degenerate.count)};
   }
 
   const mesh::LatticeMesh lattice_mesh = mesh::normalise(*mesh, settings.bits);

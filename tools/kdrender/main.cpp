@@ -8,7 +8,6 @@
 #include "kdrender/render_report.h"
 #include "render/backend.h"
 #include "scene/parse_scene.h"
-#include "sys/atomic_file.h"
 #include "sys/parallel.h"
 #include "sys/timer.h"
 
@@ -32,24 +31,25 @@ void add_options(CLI::App& app, Options& o) {
   std::string aov_help = "AOVs to write as further channels, separated by commas:";
   for (const image::AovRow& row : image::kAovRows) aov_help += fmt::format(" {}", row.name);
   app.add_option("scene", o.scene, "Scene file (JSON, see schema/scene.fbs)")->required();
-  app.add_option("-o,--output", o.output, "The EXR to write: R, G, B, A and AOVs, scene-linear")->required();
+  app.add_option("-o,--output", o.output, "The EXR to write: R, G, B, A and AOVs, scene-linear")
+      ->required()
+      ->check(file_name());
   app.add_option("--preview", o.preview, "Write an 8-bit PNG too, through the gamma stage");
   app.add_option("--device", o.device, "auto, cpu, cuda or cuda:N")->capture_default_str();
   app.add_option("--aov", o.aovs, aov_help);
-  app.add_option("--gamma", o.gamma, "Gamma of the preview")->check(CLI::Range(0.1, 10.0))->capture_default_str();
+  app.add_option("--gamma", o.gamma, "Gamma of the preview")->check(number(0.1, 10))->capture_default_str();
   app.add_flag("--gamma-exr", o.gamma_on_exr, "Apply the gamma to the EXR as well; its header then says so");
   app.add_option("--stats", o.stats, "Write a JSON report to this file, or to stdout (-)");
-  app.add_option("--threads", o.threads, "CPU threads to use; 0: all cores")->capture_default_str();
+  app.add_option("--threads", o.threads, "CPU threads to use; 0: all cores")
+      ->check(whole_number(0, 4096))
+      ->capture_default_str();
   app.add_flag("--quiet", o.quiet, "Print nothing but errors");
 }
 
-/// Finds out before the work whether every output can be written.
-Result<void> check_outputs(const Options& o) {
-  for (const std::string& path : {o.output, o.preview, o.stats}) {
-    if (path.empty() || path == "-") continue;
-    if (auto writable = AtomicFile::create(path); !writable) return writable.error();
-  }
-  return {};
+std::vector<std::string> inputs_of(const Options& o, const scene::Scene& scene) {
+  std::vector<std::string> inputs{o.scene};
+  for (const scene::SceneObject& object : scene.objects) inputs.push_back(object.file);
+  return inputs;
 }
 
 Result<void> write_images(const Options& o, const render::Frame& frame) {
@@ -65,7 +65,6 @@ Result<void> render_scene(const Options& o) {
   const ThreadLimit limit(o.threads);
   auto aovs = image::parse_aovs(o.aovs);
   if (!aovs) return aovs.error();
-  if (auto writable = check_outputs(o); !writable) return writable;
   auto device = render::choose_device(o.device);
   if (!device) return device.error();
 
@@ -74,7 +73,10 @@ Result<void> render_scene(const Options& o) {
   auto scene = scene::read_scene(o.scene);
   if (!scene) return scene.error();
   times.parse = timer.lap();
-  const render::RenderSettings settings{*aovs, !o.preview.empty(), o.gamma, o.gamma_on_exr};
+  if (auto usable = check_outputs({o.output, o.preview, o.stats}, inputs_of(o, *scene)); !usable) return usable;
+  catch_interrupts();
+  const Progress progress = progress_bar("rendering", o.quiet);
+  const render::RenderSettings settings{*aovs, !o.preview.empty(), o.gamma, o.gamma_on_exr, progress};
   auto loaded = render::load_scene(*scene, settings);
   if (!loaded) return loaded.error();
   times.load = timer.lap();
@@ -85,6 +87,7 @@ Result<void> render_scene(const Options& o) {
                device->reason.empty() ? "" : fmt::format(" ({})", device->reason));
   }
   auto frame = device->backend->render(*loaded, settings, device->index);
+  keep_going(progress, 1);
   if (!frame) return frame.error();
   timer.lap();
   if (auto written = write_images(o, *frame); !written) return written;

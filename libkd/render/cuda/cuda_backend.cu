@@ -312,17 +312,28 @@ Result<Frame> cuda_render(const LoadedScene& scene, const RenderSettings& settin
   const PipelinePlan plan{static_cast<uint32_t>(scene.lights.size()), device.targets(), settings.preview,
                           settings.gamma_on_film};
   cudaError_t launched = cudaSuccess;
-  run_pipeline(frame, plan, [&](const auto& stage) {
+  const auto launch = [&](const auto& stage) {
     using Stage = std::decay_t<decltype(stage)>;
-    Launch& launch = *launches.emplace_back(std::make_unique<Launch>());
-    launch.stage = Stage::kName;
-    launch.start.record(stream);
+    Launch& record = *launches.emplace_back(std::make_unique<Launch>());
+    record.stage = Stage::kName;
+    record.start.record(stream);
     stage_kernel<<<blocks_for(tiles * 32), kBlock, 0, stream>>>(stage, device.totals() + counter_of<Stage>());
     if (launched == cudaSuccess) launched = cudaGetLastError();
-    launch.end.record(stream);
-  });
+    record.end.record(stream);
+  };
+  const auto launch_and_count = [&](const auto& stage) -> uint64_t {
+    launch(stage);
+    unsigned long long count = 0;
+    const unsigned long long* total = device.totals() + counter_of<std::decay_t<decltype(stage)>>();
+    const cudaError_t copied = cudaMemcpyAsync(&count, total, sizeof(count), cudaMemcpyDeviceToHost, stream);
+    const cudaError_t waited = copied == cudaSuccess ? cudaStreamSynchronize(stream) : copied;
+    if (launched == cudaSuccess) launched = waited;
+    return count;
+  };
+  run_pipeline(frame, plan, launch, launch_and_count);
   KD_CUDA_TRY(launched, "launching a stage");
   KD_CUDA_TRY(cudaStreamSynchronize(stream), "rendering");
+  if (!keep_going(settings.progress, 1)) return Error{ErrorClass::interrupted, "", "interrupted"};
   for (const auto& launch : launches)
     add_stage_time(out.stats, launch->stage, launch->end.seconds_since(launch->start));
   out.stats.render_seconds = launches.back()->end.seconds_since(launches.front()->start);

@@ -1,0 +1,34 @@
+// The checker of reports finds what it should, so that a report without faults means something.
+#include <doctest/doctest.h>
+
+#include "cli/json_schema.h"
+
+using namespace kd::test;
+using nlohmann::json;
+
+TEST_SUITE("reports") {
+  TEST_CASE("the checker finds every kind of fault") {
+    const json schema = json::parse(R"({
+      "$defs": {"pair": {"type": "array", "items": {"type": "integer"}}},
+      "type": "object", "required": ["version", "pair"], "additionalProperties": false,
+      "properties": {"version": {"const": 1}, "pair": {"$ref": "#/$defs/pair"}, "kind": {"enum": ["a", "b"]}}})");
+    const auto faults = [&](const char* text) { return schema_faults(schema, json::parse(text)); };
+    using Faults = std::vector<std::string>;
+    CHECK(faults(R"({"version": 1, "pair": [1, 2], "kind": "a"})") == Faults{});
+    CHECK(faults(R"({"version": 2, "pair": []})") == Faults{"/version: is not 1"});
+    CHECK(faults(R"({"version": 1})") == Faults{"/: lacks \"pair\""});
+    CHECK(faults(R"({"version": 1, "pair": [1, 0.5]})") == Faults{"/pair/1: is no \"integer\""});
+    CHECK(faults(R"({"version": 1, "pair": [], "kind": "c"})").size() == 1);
+    CHECK(faults(R"({"version": 1, "pair": [], "more": 0})") == Faults{"/: has the undocumented more"});
+    CHECK(schema_faults({{"minimum", 0}}, 1).size() == 1);
+  }
+
+  TEST_CASE("the schemas are of one draft, and closed") {
+    for (const char* name : {"kdbuild-stats", "kdrender-stats", "kdbench-trace"}) {
+      const json schema = read_schema(name);
+      CHECK(schema["$schema"] == "https://json-schema.org/draft/2020-12/schema");
+      CHECK(schema["additionalProperties"] == false);
+      CHECK(schema["properties"]["version"]["const"] == 1);
+    }
+  }
+}

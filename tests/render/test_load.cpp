@@ -1,0 +1,134 @@
+// Loading: what a scene does not need is not opened, read or placed; what cannot be placed says where.
+#include <doctest/doctest.h>
+
+#include "render/stages/shadow.h"
+#include "worlds.h"
+
+using namespace kd;
+using namespace kd::test;
+using render::load_scene;
+
+namespace {
+
+scene::Light light(Vec3f colour) {
+  scene::Light l;
+  l.position = {0.5, 0.5, 5};
+  l.colour = colour;
+  return l;
+}
+
+}  // namespace
+
+TEST_CASE("load: an object that no part places is not opened") {
+  const TempFolder folder;
+  const std::string cube = unit_cube().write(folder.file("cube.nkd"));
+  auto s = scene_of({folder.file("none.nkd"), cube, folder.write("bad.nkd", "no object")}, {part(1, moved({}))});
+  const auto loaded = load_scene(s, {});
+  REQUIRE(loaded);
+  CHECK(loaded->skipped.objects == 2);
+  CHECK_FALSE(loaded->objects[0].file);
+  CHECK(loaded->objects[1].file);
+  CHECK(loaded->instances.size() == 1);
+
+  s.characters[0].parts.push_back(part(0, moved({})));
+  const auto missing = load_scene(s, {});
+  REQUIRE_FALSE(missing);
+  CHECK(missing.error().error_class == ErrorClass::missing);
+  s.characters[0].parts.back().object = 2;
+  CHECK(load_scene(s, {}).error().error_class == ErrorClass::object);
+}
+
+TEST_CASE("load: black lights are left out") {
+  const TempFolder folder;
+  auto s = scene_of({unit_cube().write(folder.file("cube.nkd"))}, {part(0, moved({}))});
+  s.lights = {light({0, 0, 0}), light({0, 0.5f, 0}), light({0, 0, 0})};
+  const Rendered r(s, {});
+  CHECK(r.scene.lights.size() == 1);
+  CHECK(r.scene.skipped.black_lights == 2);
+  CHECK(r.scene.skipped.shadow_launches == 2);
+  for (const render::StageTime& stage : r.frame.stats.stages) {
+    if (stage.stage == render::Shadow::kName) CHECK(stage.launches == 1);
+  }
+  s.lights = {light({0, 0, 0})};
+  const Rendered dark(s, {});
+  CHECK(dark.frame.stats.shadow_rays == 0);
+  for (const render::StageTime& stage : dark.frame.stats.stages) CHECK(stage.stage != render::Shadow::kName);
+}
+
+TEST_CASE("load: sections are read when some stage reads them, and only then") {
+  const TempFolder folder;
+  // Every attribute section is corrupt: reading one is an error, which is how the test sees it.
+  const Contents c(box_shape({0, 0, 0}, {1023, 1023, 1023}), 10);
+  std::string bytes = read_bytes(c.write(folder.file("good.nkd")));
+  const auto spoiled = [&](auto section) {
+    std::string bad = bytes;
+    bytes_of(bad, section)[0] ^= 1;
+    return folder.write("bad.nkd", bad);
+  };
+  const auto loads = [&](const std::string& file, bool lit, Vec3f ambient, std::vector<image::Aov> aovs,
+                         bool own_material = true) {
+    auto s = scene_of({file}, {part(0, moved({}))});
+    if (lit) s.lights = {light({1, 1, 1})};
+    s.ambient = ambient;
+    if (!own_material) s.characters[0].parts[0].material = Material{};
+    render::RenderSettings settings;
+    settings.aovs = std::move(aovs);
+    return bool(load_scene(s, settings));
+  };
+  using image::Aov;
+  const std::string normals = spoiled(c.normals);
+  CHECK(loads(normals, false, {1, 1, 1}, {Aov::depth, Aov::primitive, Aov::position}));
+  CHECK_FALSE(loads(normals, true, {0, 0, 0}, {}));
+  CHECK_FALSE(loads(normals, false, {0, 0, 0}, {Aov::normal}));
+  const std::string materials = spoiled(c.materials);
+  CHECK(loads(materials, false, {0, 0, 0}, {Aov::depth, Aov::normal, Aov::primitive}));
+  CHECK(loads(materials, true, {1, 1, 1}, {}, false));
+  CHECK_FALSE(loads(materials, true, {0, 0, 0}, {}));
+  CHECK_FALSE(loads(materials, false, {0, 0.1f, 0}, {}));
+  const std::string sources = spoiled(c.source_primitives);
+  CHECK(loads(sources, true, {1, 1, 1}, {Aov::depth, Aov::normal}));
+  CHECK_FALSE(loads(sources, false, {0, 0, 0}, {Aov::primitive}));
+
+  auto s = scene_of({folder.file("good.nkd")}, {part(0, moved({}))});
+  const auto bare = load_scene(s, {});
+  REQUIRE(bare);
+  CHECK(bare->skipped.sections == 5);
+  CHECK(bare->skipped.aov_buffers == image::kAovRows.size());
+  CHECK(bare->objects[0].attributes.normals.empty());
+  s.lights = {light({1, 1, 1})};
+  const auto full = load_scene(s, all_aovs());
+  REQUIRE(full);
+  CHECK(full->skipped.sections == 0);
+  CHECK(full->skipped.aov_buffers == 0);
+  CHECK(full->objects[0].attributes.normals.size() == 3);
+}
+
+TEST_CASE("load: a placement that cannot be says on which line") {
+  const TempFolder folder;
+  const std::string cube = unit_cube().write(folder.file("cube.nkd"));
+  const double huge = 1e308;
+  for (const scene::Placement& placement :
+       {scene::Placement{scene::BoxPlacement{{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 0, 1}}}},
+        scene::Placement{scene::BoxPlacement{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 1e-12}}}},
+        scene::Placement{scene::BoxPlacement{{{0, 0, 0}, {0, 0, 0}, {0, 1, 0}, {0, 0, 1}}}},
+        scene::Placement{moved({huge, 0, 0}, {huge, 1, 1})}, scene::Placement{moved({HUGE_VAL, 0, 0})}}) {
+    auto s = scene_of({cube}, {part(0, moved({})), part(0, placement)});
+    s.characters[0].parts[1].line = 42;
+    s.characters[0].parts[1].name = "bent";
+    const auto loaded = load_scene(s, {});
+    REQUIRE_FALSE(loaded);
+    CHECK(loaded.error().error_class == ErrorClass::scene);
+    CHECK(loaded.error().where == "test.json:42");
+    CHECK(loaded.error().what.find("bent") != std::string::npos);
+  }
+}
+
+TEST_CASE("load: a scene of nothing") {
+  auto s = scene_of({}, {});
+  s.background = {0.25f, 0.5f, 1};
+  const Rendered r(s, all_aovs());
+  CHECK(r.frame.stats.primary_hits == 0);
+  CHECK(r.colour(0) == s.background);
+  CHECK(r.number(image::Aov::depth, 5) == std::numeric_limits<float>::infinity());
+  CHECK(r.words(image::Aov::instance)[5] == 0xffffffffu);
+}

@@ -1,0 +1,97 @@
+// Tracing rays against one object: expansion, and hits as traversal finds them.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+
+#include "worlds.h"
+
+using namespace kd;
+using namespace kd::test;
+
+TEST_CASE("trace: vertices expand to what was packed, at every width") {
+  for (const int bits : {1, 6, 10, 11, 16, 21, 22, 24}) {
+    const Shape shape = soup_shape(bits, 60, Soup::mixed, 1);
+    const Contents c(shape, bits, false);
+    const std::vector<TriangleVertices> expected = expanded(shape);
+    for (size_t i = 0; i < expected.size(); ++i) {
+      const TriangleVertices t = expand_triangle(c.vertices.data(), &c.triangles[3 * i], bits);
+      REQUIRE(t.a == expected[i].a);
+      REQUIRE(t.b == expected[i].b);
+      REQUIRE(t.c == expected[i].c);
+    }
+  }
+}
+
+TEST_CASE("trace: hits are those of looking at every triangle, numbered as in the source") {
+  const TempFolder folder;
+  for (const int bits : {10, 21, 24}) {
+    CAPTURE(bits);
+    const Shape shape = soup_shape(bits, 200, Soup::mixed, 1);
+    const Contents c(shape, bits);  // triangle i is primitive 3 i + 1
+    const auto file = nkd::ObjectFile::open(c.write(folder.file("a.nkd")));
+    REQUIRE(file);
+    const std::vector<TriangleVertices> triangles = expanded(shape);
+    Random random(2);
+    std::vector<render::RayRecord> rays;
+    for (int i = 0; i < 3000; ++i) {
+      const PlainRay r = adversarial_ray(shape, bits, random);
+      const auto f = [](double v) { return static_cast<float>(v); };
+      rays.push_back({f(r.origin.x), f(r.origin.y), f(r.origin.z), 0, f(r.direction.x), f(r.direction.y),
+                      f(r.direction.z), 1e30f});
+    }
+    render::TraceJob job{rays, RayMode::closest, 1, 2, true};
+    const auto closest = render::cpu_trace(*file, job, 0);
+    job.mode = RayMode::any;
+    const auto any = render::cpu_trace(*file, job, 0);
+    REQUIRE(closest);
+    REQUIRE(any);
+    REQUIRE(closest->hits.size() == rays.size());
+    CHECK(closest->seconds.size() == 2);
+    CHECK(closest->steps.triangles > 0);
+    CHECK(any->steps.triangles <= closest->steps.triangles);
+    int wrong = 0, met = 0;
+    for (size_t i = 0; i < rays.size(); ++i) {
+      const render::RayRecord& r = rays[i];
+      const render::HitRecord& hit = closest->hits[i];
+      LatticeRay ray;
+      uint32_t expected = kNoTriangle;
+      TriangleHit at{};
+      if (snap_ray({r.ox, r.oy, r.oz}, {r.dx, r.dy, r.dz}, 0, r.t_max, bits, ray)) {
+        expected = brute_force(triangles, ray, 1e30f, kNoTriangle);
+        if (expected != kNoTriangle) intersect_triangle(ray, triangles[expected], 1e30f, at);
+      }
+      wrong += (any->hits[i].primitive < 0) != (expected == kNoTriangle);
+      if (expected == kNoTriangle) {
+        wrong += hit.primitive != -1 || hit.t != r.t_max || hit.u != 0 || hit.v != 0;
+        continue;
+      }
+      ++met;
+      wrong += hit.primitive != static_cast<int32_t>(3 * expected + 1);
+      wrong += hit.t != static_cast<float>(ray.t_at(at.s));
+      wrong += hit.u != static_cast<float>(at.u) || hit.v != static_cast<float>(at.v);
+    }
+    CHECK(wrong == 0);
+    CHECK(met > 500);
+  }
+}
+
+TEST_CASE("trace: t is the same number in model space, whatever the lattice") {
+  const TempFolder folder;
+  Contents c = unit_cube();
+  c.summary.lattice = {{10, -20, 30}, {2, 4, 8}, 21};
+  c.count_tree();
+  const auto file = nkd::ObjectFile::open(c.write(folder.file("a.nkd")));
+  REQUIRE(file);
+  const std::vector<render::RayRecord> rays{{0, -18, 34, 0, 4, 0, 0, 1e30f},  {11, -18, 48, 0, 0, 0, -0.5f, 1e30f},
+                                            {11, -18, 34, 0, 0, 1, 0, 1e30f}, {11, -18, 34, 0, 0, 1, 0, 1.5f},
+                                            {0, -18, 34, 0, -1, 0, 0, 1e30f}, {0, -18, 34, 2.75f, 4, 0, 0, 1e30f}};
+  const auto traced = render::cpu_trace(*file, {rays, RayMode::closest, 0, 1, false}, 0);
+  REQUIRE(traced);
+  CHECK(traced->hits[0].t == doctest::Approx(2.5).epsilon(1e-6));
+  CHECK(traced->hits[1].t == doctest::Approx(20).epsilon(1e-6));
+  CHECK(traced->hits[2].t == doctest::Approx(2).epsilon(1e-6));
+  CHECK(traced->hits[3].primitive == -1);
+  CHECK(traced->hits[3].t == 1.5f);
+  CHECK(traced->hits[4].primitive == -1);
+  CHECK(traced->hits[5].t == doctest::Approx(3).epsilon(1e-6));
+}
