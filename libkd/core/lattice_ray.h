@@ -41,14 +41,15 @@ struct LatticeRay {
 constexpr float kParallel = 1152921504606846976.0f;  // 2^60
 
 /// Where the snapped ray leaves the cube [0, top]^3, rounded up; negative if it never is inside. Computed from what was
-/// snapped: differences are exact, so it is right however far away the ray came from.
-KD_HD KD_INLINE float exit_distance(const LatticeRay& ray, double top) {
-  double s = 1e30;
+/// snapped, where differences are exact, so it is right however far away the ray came from; the two roundings of each
+/// distance are less than the margin.
+KD_HD KD_INLINE float exit_distance(const LatticeRay& ray, float top) {
+  float s = 1e30f;
   for (int axis = 0; axis < 3; ++axis) {
-    const double d = ray.direction[axis];
-    if (d != 0) s = min_of(s, ((d > 0 ? top : 0.0) - ray.origin[axis]) / d);
+    const float inverse = ray.inverse[axis];
+    s = min_of(s, ((inverse > 0 ? top : 0.0f) - ray.origin[axis]) * inverse);
   }
-  return static_cast<float>(s) * (s > 0 ? 1 + 0x1p-22f : 1.0f);
+  return s * (s > 0 ? 1 + 0x1p-22f : 1.0f);
 }
 
 /// Takes a ray that is already in lattice space onto the grid. `o` and `d` are in lattice steps; they may be anything,
@@ -58,7 +59,7 @@ KD_HD inline bool snap_ray(Vec3d o, Vec3d d, double t_min, double t_max, int bit
   const double ax = std::fabs(d.x), ay = std::fabs(d.y), az = std::fabs(d.z);
   const int k = ax >= ay && ax >= az ? 0 : ay >= az ? 1 : 2;
   const double speed = max_of(ax, ay, az);
-  if (!(speed > 0)) return false;
+  if (!(speed > 1e-300)) return false;
 
   const double grid = 1.0 / static_cast<double>(1u << (kMaxLatticeBits - bits));
   const double top = lattice_max(bits);
@@ -68,7 +69,7 @@ KD_HD inline bool snap_ray(Vec3d o, Vec3d d, double t_min, double t_max, int bit
   for (int axis = 0; axis < 3; ++axis) {
     const double oa = o[axis], da = d[axis];
     if (da != 0) {
-      const double t0 = (-grid - oa) / da, t1 = (top + grid - oa) / da;
+      const double per_step = 1 / da, t0 = (-grid - oa) * per_step, t1 = (top + grid - oa) * per_step;
       t_enter = max_of(t_enter, min_of(t0, t1));
       t_exit = min_of(t_exit, max_of(t0, t1));
     } else if (oa < -grid || oa > top + grid) {
@@ -78,27 +79,28 @@ KD_HD inline bool snap_ray(Vec3d o, Vec3d d, double t_min, double t_max, int bit
   if (!(t_enter <= t_exit)) return false;
 
   // The origin: on the last grid plane across k at or before the entry, inside the cube.
+  const double steps = 1 / grid, t_scale = 1 / speed;
   const double ok = o[k], dk = d[k];
-  const double entry = (ok + t_enter * dk) / grid;
+  const double entry = (ok + t_enter * dk) * steps;
   const double plane = min_of(max_of((dk > 0 ? std::floor(entry) : std::ceil(entry)) * grid, 0.0), top);
-  const double t_base = (plane - ok) / dk;
+  const double t_base = (dk > 0 ? plane - ok : ok - plane) * t_scale;
   const auto place = [&](double oa, double da, bool along) {
-    const double p = std::rint((oa + t_base * da) / grid) * grid;
+    const double p = std::rint((oa + t_base * da) * steps) * grid;
     return static_cast<float>(along ? plane : min_of(max_of(p, -1.0), top + 1));
   };
   ray.origin = {place(o.x, d.x, k == 0), place(o.y, d.y, k == 1), place(o.z, d.z, k == 2)};
 
-  const auto turn = [&](double da) { return static_cast<float>(std::rint(da / speed * 0x1p24) * 0x1p-24); };
+  const auto turn = [&](double da) { return static_cast<float>(std::rint(da * t_scale * 0x1p24) * 0x1p-24); };
   ray.direction = {turn(d.x), turn(d.y), turn(d.z)};
   const auto invert = [](float c) { return c == 0 ? kParallel : 1.0f / c; };
   ray.inverse = {invert(ray.direction.x), invert(ray.direction.y), invert(ray.direction.z)};
 
   ray.axis = k;
   ray.t_base = t_base;
-  ray.t_scale = 1 / speed;
+  ray.t_scale = t_scale;
   ray.s_min = static_cast<float>(max_of((t_min - t_base) * speed, 0.0));
   ray.s_max = static_cast<float>(min_of((t_max - t_base) * speed, 1e30));
-  ray.s_exit = exit_distance(ray, top);
+  ray.s_exit = exit_distance(ray, static_cast<float>(top));
   return ray.s_exit >= 0;
 }
 
