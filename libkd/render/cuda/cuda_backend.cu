@@ -283,7 +283,10 @@ Result<std::string> cuda_probe(int index) {
   int count = 0;
   if (const cudaError_t status = cudaGetDeviceCount(&count); status != cudaSuccess) {
     cudaGetLastError();
-    return Error{ErrorClass::device, "", std::string("no CUDA device: ") + cudaGetErrorString(status)};
+    int driver = 0;  // stays 0 where there is none, which CUDA tells as one that is too old
+    cudaDriverGetVersion(&driver);
+    const char* why = driver == 0 ? "there is no NVIDIA driver on this machine" : cudaGetErrorString(status);
+    return Error{ErrorClass::device, "", std::string("no CUDA device: ") + why};
   }
   if (index >= count) {
     return Error{ErrorClass::device, "",
