@@ -19,7 +19,7 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
-#include "test_folder.h"
+#include "support/temp_folder.h"
 
 using namespace kd;
 using namespace kd::image;
@@ -85,7 +85,7 @@ class FileSizeLimit {
 }  // namespace
 
 TEST_CASE("exr: every channel comes back bit for bit") {
-  const TestFolder folder;
+  const kd::test::TempFolder folder;
   const std::string path = folder.file("all.exr");
   const Film film = make_film(37, 21);
   const auto written = write_exr(path, film, {});
@@ -116,7 +116,7 @@ TEST_CASE("exr: every channel comes back bit for bit") {
 }
 
 TEST_CASE("exr: the header holds what was asked for and no more") {
-  const TestFolder folder;
+  const kd::test::TempFolder folder;
   Film film = make_film(1, 1);
   film.aovs.clear();
   REQUIRE(write_exr(folder.file("plain.exr"), film, {}));
@@ -135,13 +135,13 @@ TEST_CASE("exr: the header holds what was asked for and no more") {
 
 TEST_CASE("exr: exrinfo, where it is installed, accepts the file") {
   if (std::system("command -v exrinfo > /dev/null 2>&1") != 0) return;
-  const TestFolder folder;
+  const kd::test::TempFolder folder;
   REQUIRE(write_exr(folder.file("all.exr"), make_film(64, 48), {2.2, "kdrender", {}}));
   CHECK(std::system(fmt::format("exrinfo -s '{}' > /dev/null", folder.file("all.exr")).c_str()) == 0);
 }
 
 TEST_CASE("exr: what cannot be written is an output error and leaves nothing behind") {
-  const TestFolder folder;
+  const kd::test::TempFolder folder;
   const Film film = make_film(64, 64);
   const auto fails = [&](const std::string& path, const Film& f, const ExrHeader& header) {
     const auto written = write_exr(path, f, header);
@@ -166,7 +166,7 @@ TEST_CASE("exr: what cannot be written is an output error and leaves nothing beh
 }
 
 TEST_CASE("exr: a failure leaves the file that was there") {
-  const TestFolder folder;
+  const kd::test::TempFolder folder;
   const std::string path = folder.file("out.exr");
   REQUIRE(write_exr(path, make_film(8, 8), {}));
   const auto size = std::filesystem::file_size(path);

@@ -8,7 +8,7 @@
 
 #include <doctest/doctest.h>
 
-#include "test_folder.h"
+#include "support/temp_folder.h"
 
 #define STB_IMAGE_IMPLEMENTATION
 #define STB_IMAGE_STATIC
@@ -19,7 +19,7 @@ using namespace kd;
 using namespace kd::image;
 
 TEST_CASE("png: the pixels come back, rows from the top") {
-  const TestFolder folder;
+  const kd::test::TempFolder folder;
   const std::string path = folder.file("preview.png");
   constexpr uint32_t kWidth = 31, kHeight = 17;
   std::vector<uint8_t> rgb;
@@ -44,7 +44,7 @@ TEST_CASE("png: the pixels come back, rows from the top") {
 }
 
 TEST_CASE("png: what cannot be written is an output error and leaves nothing behind") {
-  const TestFolder folder;
+  const kd::test::TempFolder folder;
   const std::vector<uint8_t> rgb(12);
   const auto fails = [&](const std::string& path, uint32_t width, uint32_t height) {
     const auto written = write_png(path, width, height, rgb);

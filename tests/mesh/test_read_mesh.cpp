@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "mesh/read_mesh.h"
-#include "temp_file.h"
+#include "support/temp_folder.h"
 
 using namespace kd;
 using namespace kd::mesh;

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "mesh/read_mesh.h"
-#include "temp_file.h"
+#include "support/temp_folder.h"
 
 using namespace kd;
 using namespace kd::mesh;

@@ -1,8 +1,6 @@
 // Objects in memory that a test can spoil, and files of them.
 #pragma once
 
-#include <unistd.h>
-
 #include <filesystem>
 #include <fstream>
 #include <optional>
@@ -14,35 +12,9 @@
 #include "nkd/object_file.h"
 #include "nkd/validate.h"
 #include "nkd/write.h"
+#include "support/temp_folder.h"
 
 namespace kd::test {
-
-class TempFolder {
- public:
-  TempFolder() {
-    static int next = 0;
-    // In memory where there is a disk for it: objects are flushed when they are written, thousands of times here.
-    const std::filesystem::path memory = "/dev/shm";
-    path_ = (std::filesystem::is_directory(memory) ? memory : std::filesystem::temp_directory_path()) /
-            ("kd_nkd_" + std::to_string(::getpid()) + "_" + std::to_string(next++));
-    std::filesystem::create_directories(path_);
-  }
-  ~TempFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TempFolder(const TempFolder&) = delete;
-  TempFolder& operator=(const TempFolder&) = delete;
-
-  std::string file(const std::string& name) const { return (path_ / name).string(); }
-  std::string write(const std::string& name, const std::string& bytes) const {
-    std::ofstream(file(name), std::ios::binary | std::ios::trunc) << bytes;
-    return file(name);
-  }
-
- private:
-  std::filesystem::path path_;
-};
 
 inline std::string read_bytes(const std::string& path) {
   std::ifstream in(path, std::ios::binary);

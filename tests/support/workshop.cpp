@@ -39,16 +39,8 @@ std::optional<fs::path> shared_mesh(const std::string& name) {
   return unpacked;
 }
 
-Workshop::Workshop() {
-  std::string name = (fs::temp_directory_path() / "kdtrace-parity-XXXXXX").string();
-  REQUIRE(mkdtemp(name.data()) != nullptr);
-  folder_ = name;
-}
-
-Workshop::~Workshop() { fs::remove_all(folder_); }
-
 std::string Workshop::compile(const fs::path& mesh, int bits) {
-  const fs::path object = folder_ / "compiled" / mesh.stem().concat(".nkd");
+  const fs::path object = folder() / "compiled" / mesh.stem().concat(".nkd");
   fs::create_directories(object.parent_path());
   tools::CompileSettings settings;
   settings.bits = bits;
@@ -58,7 +50,7 @@ std::string Workshop::compile(const fs::path& mesh, int bits) {
 }
 
 scene::Scene Workshop::data_scene(const std::string& name) {
-  const fs::path scene_file = folder_ / name;
+  const fs::path scene_file = folder() / name;
   fs::copy_file(source_root() / "data" / name, scene_file, fs::copy_options::overwrite_existing);
   auto scene = scene::read_scene(scene_file.string());
   REQUIRE_MESSAGE(scene, (scene ? "" : scene.error().line()));

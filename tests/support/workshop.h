@@ -9,6 +9,7 @@
 #include "core/vec.h"
 #include "render/backend.h"
 #include "scene/scene.h"
+#include "support/temp_folder.h"
 
 namespace kd::test {
 
@@ -20,22 +21,17 @@ std::filesystem::path shared_data();
 /// A real mesh, unpacked if it lies there as .xz; nothing if it is not there.
 std::optional<std::filesystem::path> shared_mesh(const std::string& name);
 
-/// A temporary folder that disappears with its owner.
+/// A temporary folder in which meshes are compiled.
 class Workshop {
  public:
-  Workshop();
-  Workshop(const Workshop&) = delete;
-  Workshop& operator=(const Workshop&) = delete;
-  ~Workshop();
-
   /// Compiles a mesh, and returns the object's path.
   std::string compile(const std::filesystem::path& mesh, int bits = 21);
   /// A scene file of data/ with the objects it places compiled beside it.
   scene::Scene data_scene(const std::string& name);
-  const std::filesystem::path& folder() const { return folder_; }
+  std::filesystem::path folder() const { return folder_.path(); }
 
  private:
-  std::filesystem::path folder_;
+  TempFolder folder_;
 };
 
 /// A camera file: position, target, up, vertical field of view, light.
