@@ -2,35 +2,50 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace kd::build {
 
 namespace {
 
 constexpr double kWidening = 0x1p-20;
+constexpr double kRounding = 0x1p-20;  // more than a computed coordinate is off by
+
+/// A corner of a polygon. Coordinates that clipping computed are rounded; those taken over from vertices are exact, and
+/// so is what lies between two that are equal. A wall keeps its plane, and a sliver thinner than double can tell is not
+/// lost.
+struct Corner {
+  std::array<double, 3> at;
+  std::array<bool, 3> exact;
+};
 
 struct Polygon {
-  std::array<std::array<double, 3>, 28> points;  // six cuts make 9 of 3, and 28 if rounding conspired at each
+  std::array<Corner, 28> corners;  // six cuts make 9 of 3, and 28 if rounding conspired at each
   size_t count = 0;
 
-  void push(const std::array<double, 3>& p) { points[count++] = p; }
+  void push(const Corner& c) { corners[count++] = c; }
 };
+
+Corner cut_edge(const Corner& p, const Corner& q, double t, size_t axis, double plane) {
+  Corner cut;
+  for (size_t k = 0; k < 3; ++k) {
+    cut.at[k] = p.at[k] + t * (q.at[k] - p.at[k]);
+    cut.exact[k] = p.exact[k] && q.exact[k] && p.at[k] == q.at[k];
+  }
+  cut.at[axis] = plane;
+  cut.exact[axis] = true;
+  return cut;
+}
 
 /// What of `in` has sign * coordinate <= sign * plane.
 void clip(const Polygon& in, size_t axis, double plane, double sign, Polygon& out) {
   out.count = 0;
   for (size_t i = 0; i < in.count; ++i) {
-    const auto& p = in.points[i];
-    const auto& q = in.points[i + 1 < in.count ? i + 1 : 0];
-    const double dp = sign * (p[axis] - plane), dq = sign * (q[axis] - plane);
+    const Corner& p = in.corners[i];
+    const Corner& q = in.corners[i + 1 < in.count ? i + 1 : 0];
+    const double dp = sign * (p.at[axis] - plane), dq = sign * (q.at[axis] - plane);
     if (dp <= 0) out.push(p);
-    if ((dp < 0 && dq > 0) || (dp > 0 && dq < 0)) {
-      const double t = dp / (dp - dq);
-      std::array<double, 3> cut;
-      for (size_t k = 0; k < 3; ++k) cut[k] = p[k] + t * (q[k] - p[k]);
-      cut[axis] = plane;
-      out.push(cut);
-    }
+    if ((dp < 0 && dq > 0) || (dp > 0 && dq < 0)) out.push(cut_edge(p, q, dp / (dp - dq), axis, plane));
   }
 }
 
@@ -39,7 +54,7 @@ void clip(const Polygon& in, size_t axis, double plane, double sign, Polygon& ou
 std::optional<Box3u> clipped_bounds(const LatticeTriangle& triangle, const Box3u& cell) {
   const Box3u whole = bounds(triangle);
   Polygon a, b;
-  for (Vec3u p : triangle) a.push({double(p.x), double(p.y), double(p.z)});
+  for (Vec3u p : triangle) a.push({{double(p.x), double(p.y), double(p.z)}, {true, true, true}});
   for (size_t axis = 0; axis < 3; ++axis) {
     const int k = static_cast<int>(axis);
     if (whole.lo[k] < cell.lo[k]) {
@@ -55,10 +70,11 @@ std::optional<Box3u> clipped_bounds(const LatticeTriangle& triangle, const Box3u
 
   Box3u box;
   for (size_t axis = 0; axis < 3; ++axis) {
-    double lo = a.points[0][axis], hi = lo;
-    for (size_t i = 1; i < a.count; ++i) {
-      lo = std::min(lo, a.points[i][axis]);
-      hi = std::max(hi, a.points[i][axis]);
+    double lo = std::numeric_limits<double>::infinity(), hi = -lo;
+    for (size_t i = 0; i < a.count; ++i) {
+      const double slack = a.corners[i].exact[axis] ? 0 : kRounding;
+      lo = std::min(lo, a.corners[i].at[axis] - slack);
+      hi = std::max(hi, a.corners[i].at[axis] + slack);
     }
     const int k = static_cast<int>(axis);
     const double cell_lo = cell.lo[k], cell_hi = cell.hi[k];

@@ -21,7 +21,8 @@ inline Box3u bounds(const LatticeTriangle& t) {
 /// Nothing if the triangle has no point in the cell.
 ///
 /// Sutherland and Hodgman's clipping, in double, against the cell widened by 2^-20 steps. Rounding moves a computed
-/// point by less than 2^-26 steps, so the widened polygon contains the true one.
+/// coordinate by less than 2^-26 steps, so the widened polygon contains the true one, and 2^-20 added to the
+/// coordinates that are not exact contains what rounding took.
 std::optional<Box3u> clipped_bounds(const LatticeTriangle& triangle, const Box3u& cell);
 
 }  // namespace kd::build

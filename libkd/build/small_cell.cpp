@@ -57,30 +57,54 @@ void push_child(const Context& context, const Box3u& child, const Split& split, 
   }
 }
 
+double make_leaf_of(const Context& context, std::span<const BoxedTriangle> triangles, uint32_t slot, Subtree& out) {
+  const auto count = static_cast<uint32_t>(triangles.size());
+  out.nodes[slot] = make_leaf(static_cast<uint32_t>(out.references.size()), count);
+  for (const BoxedTriangle& t : triangles) out.references.push_back(t.triangle);
+  return context.leaf_cost(count);
+}
+
+/// The probability that a ray which meets `cell` meets `child`.
+double probability(const Box3u& child, const Box3u& cell, Vec3d step) {
+  const double area = half_area(vec_cast<double>(cell.extent()) * step);
+  return area > 0 ? half_area(vec_cast<double>(child.extent()) * step) / area : 1;
+}
+
 }  // namespace
 
-void build_small_cell(const Context& context, const Box3u& cell, int depth, std::vector<BoxedTriangle>& stack,
-                      size_t first, uint32_t slot, Subtree& out) {
+double build_small_cell(const Context& context, const Box3u& cell, int depth, std::vector<BoxedTriangle>& stack,
+                        size_t first, uint32_t slot, Subtree& out) {
   const size_t end = stack.size();
-  const std::span<const BoxedTriangle> triangles = std::span(stack).subspan(first);
-  const auto count = static_cast<uint32_t>(triangles.size());
-  const Split split = count > 0 && depth < context.max_depth ? choose_split(context, cell, triangles) : Split{};
-  if (split.cost >= context.leaf_cost(count)) {
-    out.nodes[slot] = make_leaf(static_cast<uint32_t>(out.references.size()), count);
-    for (const BoxedTriangle& t : triangles) out.references.push_back(t.triangle);
+  const auto triangles = [&] { return std::span<const BoxedTriangle>(stack).subspan(first, end - first); };
+  const auto count = static_cast<uint32_t>(end - first);
+  const double leaf_cost = context.leaf_cost(count);
+  const Split split = count > 0 && depth < context.max_depth ? choose_split(context, cell, triangles()) : Split{};
+  if (split.cost >= leaf_cost) {
+    const double cost = make_leaf_of(context, triangles(), slot, out);
     stack.resize(first);
-    return;
+    return cost;
   }
+
+  const size_t nodes_before = out.nodes.size(), references_before = out.references.size();
   const uint32_t pair = out.open_inner(slot, split.axis, split.plane);
-  Box3u child = cell;
-  child.hi.set(split.axis, split.plane);
-  push_child(context, child, split, true, stack, first, end);
-  build_small_cell(context, child, depth + 1, stack, end, pair, out);
-  child = cell;
-  child.lo.set(split.axis, split.plane);
-  push_child(context, child, split, false, stack, first, end);
-  build_small_cell(context, child, depth + 1, stack, end, pair + 1, out);
+  double cost = context.costs.traversal;
+  const auto descend = [&](const Box3u& child, bool below, uint32_t child_slot) {
+    push_child(context, child, split, below, stack, first, end);
+    cost += probability(child, cell, context.step) *
+            build_small_cell(context, child, depth + 1, stack, end, child_slot, out);
+  };
+  Box3u below = cell, above = cell;
+  below.hi.set(split.axis, split.plane);
+  above.lo.set(split.axis, split.plane);
+  descend(below, true, pair);
+  descend(above, false, pair + 1);
+  if (cost >= leaf_cost) {
+    out.nodes.resize(nodes_before);
+    out.references.resize(references_before);
+    cost = make_leaf_of(context, triangles(), slot, out);
+  }
   stack.resize(first);
+  return cost;
 }
 
 }  // namespace kd::build

@@ -9,7 +9,7 @@ namespace kd {
 struct SahCosts {
   double traversal = 1;
   double intersection = 1.5;
-  double empty_bonus = 0.05;  // share of a split's cost that is forgiven where it cuts off empty space
+  double empty_bonus = 0.15;  // share of a split's cost that is forgiven where it cuts off empty space
 };
 
 /// Half the surface of a box with these edges. Every use is a ratio of two.

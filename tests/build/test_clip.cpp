@@ -114,3 +114,13 @@ TEST_CASE("clip: known parts") {
   CHECK(band->hi.y <= 7);
   CHECK(band->hi.y >= 6);
 }
+
+TEST_CASE("clip: a sliver thinner than double can tell") {
+  // Of this needle, 2e-11 steps of x lie in the cell's interior, and double has 5e-10 there.
+  const build::LatticeTriangle needle{Vec3u{2094740, 54102, 2059874}, Vec3u{2094740, 2095866, 2059875},
+                                      Vec3u{2094741, 2095866, 5302}};
+  const auto box = clipped_bounds(needle, {{2094740, 54202, 2059874}, {2094753, 54203, 2059883}});
+  REQUIRE(box);
+  CHECK(box->lo.x == 2094740);
+  CHECK(box->hi.x == 2094741);
+}

@@ -1,0 +1,25 @@
+// Objects of the real meshes, the bad ones included, are sound in depth: no leaf lacks a triangle that passes through
+// its cell, decided in exact integers.
+#include <doctest/doctest.h>
+
+#include "nkd/validate.h"
+#include "support/workshop.h"
+
+using namespace kd;
+using namespace kd::test;
+
+TEST_CASE("objects of real meshes are sound") {
+  Workshop workshop;
+  for (const char* name : {"sibenik", "sponza", "bunny", "dragon_res2", "teapot", "staircase", "living_room",
+                           "bad_beetle", "bad_legocar", "bad_cycloidal", "bad_thingi_112932", "bad_thingi_1514499"}) {
+    const auto mesh = shared_mesh(std::string(name) + ".ply");
+    if (!mesh) {
+      MESSAGE("skipped: no " << name << " in " << shared_data().string());
+      continue;
+    }
+    CAPTURE(name);
+    const auto object = nkd::ObjectFile::open(workshop.compile(*mesh));
+    REQUIRE(object);
+    for (const nkd::Finding& finding : nkd::validate(*object)) FAIL_CHECK(finding.line());
+  }
+}
