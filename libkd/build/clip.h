@@ -20,9 +20,8 @@ inline Box3u bounds(const LatticeTriangle& t) {
 /// The smallest lattice box around the triangle's part in the closed cell, or one a step larger: never too small.
 /// Nothing if the triangle has no point in the cell.
 ///
-/// Sutherland and Hodgman's clipping, in double, against the cell widened by 2^-20 steps. Rounding moves a computed
-/// coordinate by less than 2^-26 steps, so the widened polygon contains the true one, and 2^-20 added to the
-/// coordinates that are not exact contains what rounding took.
+/// Sutherland and Hodgman's clipping, in double. Coordinates that are known exactly are cut exactly; those that were
+/// computed are taken to be uncertain by 2^-20 steps, far more than they are, always to the larger side.
 std::optional<Box3u> clipped_bounds(const LatticeTriangle& triangle, const Box3u& cell);
 
 }  // namespace kd::build
