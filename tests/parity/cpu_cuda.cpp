@@ -47,8 +47,7 @@ TEST_CASE("CPU and CUDA images are bit-identical") {
   Workshop workshop;
   for (const char* name : {"cathedral.json", "spheres.json"}) check_same(name, workshop.data_scene(name), *cpu, *cuda);
 
-  for (const char* name : {"sibenik", "sponza", "bunny", "dragon_res2", "teapot", "staircase", "living_room",
-                           "bad_beetle", "bad_legocar", "bad_cycloidal", "bad_thingi_112932", "bad_thingi_1514499"}) {
+  for (const char* name : kRealMeshes) {
     const auto mesh = shared_mesh(std::string(name) + ".ply");
     if (!mesh) {
       MESSAGE("skipped: no " << name << " in " << shared_data().string());

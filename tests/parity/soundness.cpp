@@ -10,8 +10,7 @@ using namespace kd::test;
 
 TEST_CASE("objects of real meshes are sound") {
   Workshop workshop;
-  for (const char* name : {"sibenik", "sponza", "bunny", "dragon_res2", "teapot", "staircase", "living_room",
-                           "bad_beetle", "bad_legocar", "bad_cycloidal", "bad_thingi_112932", "bad_thingi_1514499"}) {
+  for (const char* name : kRealMeshes) {
     const auto mesh = shared_mesh(std::string(name) + ".ply");
     if (!mesh) {
       MESSAGE("skipped: no " << name << " in " << shared_data().string());

@@ -18,6 +18,20 @@ namespace kd::test {
 std::filesystem::path source_root();
 std::filesystem::path shared_data();
 
+/// The meshes there, without their .ply; each has a camera file of the same name.
+inline constexpr const char* kRealMeshes[] = {"sibenik",
+                                              "sponza",
+                                              "bunny",
+                                              "dragon_res2",
+                                              "teapot",
+                                              "staircase",
+                                              "living_room",
+                                              "bad_beetle",
+                                              "bad_legocar",
+                                              "bad_cycloidal",
+                                              "bad_thingi_112932",
+                                              "bad_thingi_1514499"};
+
 /// A real mesh, unpacked if it lies there as .xz; nothing if it is not there.
 std::optional<std::filesystem::path> shared_mesh(const std::string& name);
 
