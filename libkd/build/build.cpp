@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <mutex>
+#include <numeric>
 #include <utility>
 
 #include "build/clip.h"
@@ -46,7 +46,7 @@ class Builder {
  public:
   Builder(const Context& context, const Progress& progress) : context_(context), progress_(progress) {}
 
-  Cell root(const Box3u& cube) const;
+  Cell root(const Lattice& lattice) const;
   void build(Cell cell, uint32_t slot, Subtree& out);
   bool cancelled() const { return cancelled_; }
 
@@ -64,21 +64,17 @@ class Builder {
   std::atomic<bool> cancelled_ = false;
 };
 
-Cell Builder::root(const Box3u& cube) const {
+Cell Builder::root(const Lattice& lattice) const {
   Cell cell;
-  cell.box = cube;
-  const size_t n = context_.triangles.size();
+  cell.box = lattice.cube();
+  const auto n = static_cast<uint32_t>(context_.triangles.size());
   cell.triangles.resize(n);
-  std::vector<Box3u> boxes(n);
-  for (uint32_t i = 0; i < n; ++i) {
-    cell.triangles[i] = i;
-    boxes[i] = bounds(context_.corners(i));
-  }
+  std::iota(cell.triangles.begin(), cell.triangles.end(), 0u);
   for_each_axis(n >= kParallelSweep, [&](int axis) {
     EventList& events = cell.events[static_cast<size_t>(axis)];
-    events.reserve(2 * n);
-    for (uint32_t i = 0; i < n; ++i) append_events(boxes[i], axis, i, events);
-    std::sort(events.begin(), events.end());
+    events.reserve(2 * size_t{n});
+    for (uint32_t i = 0; i < n; ++i) append_events(bounds(context_.corners(i)), axis, i, events);
+    sort_root_events(events, lattice.bits + 2);
   });
   return cell;
 }
@@ -87,107 +83,128 @@ Split Builder::choose_split(const Cell& cell) const {
   std::array<Split, 3> candidates;
   for_each_axis(cell.count() >= kParallelSweep, [&](int axis) {
     const auto a = static_cast<size_t>(axis);
-    candidates[a] = best_split(cell.events[a], axis, cell.box, cell.count(), context_.step, context_.costs);
+    candidates[a] = best_split(context_, cell.events[a], axis, cell.box, cell.count());
   });
   return std::min({candidates[0], candidates[1], candidates[2]}, better);
 }
 
-/// Which triangles go below the plane, above it, or to both and are clipped.
-enum Side : uint8_t { both = 0, below = 1, above = 2 };
+/// Where a parent's triangle goes: its number in the one child that has it, with the child's side in the lowest bit, or
+/// kBoth if it is clipped and goes to either with events of its own.
+constexpr uint32_t kBoth = 0xffffffffu;
+enum Side : uint32_t { kBelow = 0, kAbove = 1 };
 
-std::vector<uint8_t> classify(const EventList& events, uint32_t count, const Split& split) {
-  std::vector<uint8_t> side(count, both);
+std::vector<uint32_t> classify(const EventList& events, uint32_t count, const Split& split) {
+  std::vector<uint32_t> side(count, kBoth);
   for (Event e : events) {
     const uint32_t plane = plane_of(e), triangle = triangle_of(e);
     switch (kind_of(e)) {
       case EventKind::end:
-        if (plane <= split.plane) side[triangle] = below;
+        if (plane <= split.plane) side[triangle] = kBelow;
         break;
       case EventKind::start:
-        if (plane >= split.plane) side[triangle] = above;
+        if (plane >= split.plane) side[triangle] = kAbove;
         break;
       case EventKind::flat:
-        side[triangle] = plane < split.plane || (plane == split.plane && split.flat_left) ? below : above;
+        side[triangle] = plane < split.plane || (plane == split.plane && split.flat_below) ? kBelow : kAbove;
         break;
     }
   }
   return side;
 }
 
-/// One child's share of a parent's triangles: their numbers in the child, and boxes of those that were clipped.
-struct Share {
-  static constexpr uint32_t kAbsent = 0xffffffffu;
-  std::vector<uint32_t> number;                     // in the parent -> in the child, or kAbsent
-  std::vector<std::pair<uint32_t, Box3u>> clipped;  // number in the child, box in the child's cell
+/// A clipped triangle's part in one child.
+struct Part {
+  uint32_t number;
+  Box3u box;
 };
 
-EventList child_events(const EventList& parent, int axis, const std::vector<uint8_t>& side, Side wanted,
-                       const Share& share) {
-  EventList events, fresh;
-  events.reserve(parent.size());
-  for (Event e : parent) {
-    const uint32_t triangle = triangle_of(e);
-    if (side[triangle] == wanted) events.push_back(renumbered(e, share.number[triangle]));
+/// One child's events along an axis in the making: the parent's, which arrive in order, merged with those of the
+/// clipped triangles.
+class Merge {
+ public:
+  Merge(EventList& out, const std::vector<Part>& parts, int axis, size_t count) : out_(out) {
+    fresh_.reserve(2 * parts.size() + 1);
+    for (const Part& part : parts) append_events(part.box, axis, part.number, fresh_);
+    std::sort(fresh_.begin(), fresh_.end());
+    fresh_.push_back(~Event{0});
+    next_ = fresh_.data();
+    out_.reserve(2 * count);
   }
-  fresh.reserve(2 * share.clipped.size());
-  for (const auto& [number, box] : share.clipped) append_events(box, axis, number, fresh);
-  merge_events(events, fresh);
-  return events;
-}
+  void put(Event e) {
+    while (*next_ < e) out_.push_back(*next_++);
+    out_.push_back(e);
+  }
+  void finish() { out_.insert(out_.end(), next_, static_cast<const Event*>(&fresh_.back())); }
+
+ private:
+  EventList& out_;
+  EventList fresh_;  // ends with a sentinel
+  const Event* next_;
+};
 
 std::pair<Cell, Cell> Builder::divide(const Cell& cell, const Split& split) const {
-  const uint32_t n = cell.count();
-  const auto axis = static_cast<size_t>(split.axis);
-  const std::vector<uint8_t> side = classify(cell.events[axis], n, split);
-
-  std::pair<Cell, Cell> children;
-  children.first.box = children.second.box = cell.box;
-  children.first.box.hi.set(split.axis, split.plane);
-  children.second.box.lo.set(split.axis, split.plane);
-
-  const auto fill = [&](Cell& child, Side wanted) {
-    Share share;
-    share.number.assign(n, Share::kAbsent);
-    for (uint32_t i = 0; i < n; ++i) {
-      if (side[i] != wanted && side[i] != both) continue;
-      const uint32_t number = child.count();
-      if (side[i] == both) {
-        const auto box = clipped_bounds(context_.corners(cell.triangles[i]), child.box);
-        if (!box) continue;
-        share.clipped.emplace_back(number, *box);
-      }
-      share.number[i] = number;
-      child.triangles.push_back(cell.triangles[i]);
-    }
-    for_each_axis(n >= kParallelSweep, [&](int a) {
-      const auto k = static_cast<size_t>(a);
-      child.events[k] = child_events(cell.events[k], a, side, wanted, share);
-    });
+  std::vector<uint32_t> target = classify(cell.events[static_cast<size_t>(split.axis)], cell.count(), split);
+  std::array<Cell, 2> children;
+  for (Cell& child : children) {
+    child.box = cell.box;
     child.depth = cell.depth + 1;
-  };
-  if (n >= kParallelSweep) {
-    parallel_tasks([&] { fill(children.first, below); }, [&] { fill(children.second, above); });
-  } else {
-    fill(children.first, below);
-    fill(children.second, above);
   }
-  const double total = children.first.count() + children.second.count();
-  children.first.weight = total > 0 ? cell.weight * children.first.count() / total : 0;
-  children.second.weight = cell.weight - children.first.weight;
-  return children;
+  children[kBelow].box.hi.set(split.axis, split.plane);
+  children[kAbove].box.lo.set(split.axis, split.plane);
+  children[kBelow].triangles.reserve(split.below);
+  children[kAbove].triangles.reserve(split.above);
+
+  std::array<std::vector<Part>, 2> parts;
+  for (uint32_t i = 0; i < cell.count(); ++i) {
+    const uint32_t triangle = cell.triangles[i];
+    const auto append = [&](Side side) {
+      children[side].triangles.push_back(triangle);
+      return children[side].count() - 1;
+    };
+    if (target[i] != kBoth) {
+      const auto side = static_cast<Side>(target[i]);
+      target[i] = append(side) << 1 | side;
+      continue;
+    }
+    const SplitBounds clipped = split_bounds(context_.corners(triangle), cell.box, split.axis, split.plane);
+    if (!clipped.below.empty()) parts[kBelow].push_back({append(kBelow), clipped.below});
+    if (!clipped.above.empty()) parts[kAbove].push_back({append(kAbove), clipped.above});
+  }
+
+  for_each_axis(cell.count() >= kParallelSweep, [&](int axis) {
+    const auto a = static_cast<size_t>(axis);
+    Merge below(children[kBelow].events[a], parts[kBelow], axis, children[kBelow].count());
+    Merge above(children[kAbove].events[a], parts[kAbove], axis, children[kAbove].count());
+    for (Event e : cell.events[a]) {
+      const uint32_t to = target[triangle_of(e)];
+      if (to == kBoth) continue;
+      (to & 1 ? above : below).put(renumbered(e, to >> 1));
+    }
+    below.finish();
+    above.finish();
+  });
+  const double total = children[kBelow].count() + children[kAbove].count();
+  children[kBelow].weight = total > 0 ? cell.weight * children[kBelow].count() / total : 0;
+  children[kAbove].weight = cell.weight - children[kBelow].weight;
+  return {std::move(children[kBelow]), std::move(children[kAbove])};
 }
 
 /// Leaves event lists behind: the boxes they describe are all that small cells need.
 void Builder::build_small(const Cell& cell, uint32_t slot, Subtree& out) const {
-  std::vector<BoxedTriangle> stack(cell.count());
-  for (uint32_t i = 0; i < cell.count(); ++i) stack[i].triangle = cell.triangles[i];
-  for (int axis = 0; axis < 3; ++axis) {
-    for (Event e : cell.events[static_cast<size_t>(axis)]) {
-      Box3u& box = stack[triangle_of(e)].box;
-      if (kind_of(e) != EventKind::end) box.lo.set(axis, plane_of(e));
-      if (kind_of(e) != EventKind::start) box.hi.set(axis, plane_of(e));
+  thread_local BoxStack stack;
+  const size_t n = cell.count();
+  stack.size = 0;
+  stack.reserve(n);
+  std::copy(cell.triangles.begin(), cell.triangles.end(), stack.triangles.begin());
+  for (size_t axis = 0; axis < 3; ++axis) {
+    BoxStack::Interval& boxes = stack.axes[axis];
+    for (Event e : cell.events[axis]) {
+      const auto plane = static_cast<int32_t>(plane_of(e));
+      if (kind_of(e) != EventKind::end) boxes.lo[triangle_of(e)] = plane;
+      if (kind_of(e) != EventKind::start) boxes.hi[triangle_of(e)] = plane;
     }
   }
+  stack.size = n;
   build_small_cell(context_, cell.box, cell.depth, stack, 0, slot, out);
 }
 
@@ -199,32 +216,34 @@ void Builder::build(Cell cell, uint32_t slot, Subtree& out) {
     return;
   }
   const Split split = cell.depth < context_.max_depth ? choose_split(cell) : Split{};
-  if (split.cost >= context_.leaf_cost(cell.count())) {
+  if (!pays(context_, cell.box, cell.count(), split)) {
     out.nodes[slot] = make_leaf(static_cast<uint32_t>(out.references.size()), cell.count());
     out.references.insert(out.references.end(), cell.triangles.begin(), cell.triangles.end());
     report(cell.weight);
     return;
   }
 
-  std::pair<Cell, Cell> children = divide(cell, split);
+  auto [below, above] = divide(cell, split);
   const bool parallel = cell.count() >= kParallelSubtree;
   cell = {};
-  const uint32_t pair = out.open_inner(slot, split.axis, split.plane);
-  if (parallel) {
-    Subtree below_part, above_part;
-    parallel_tasks([&] { build(std::move(children.first), 0, below_part); },
-                   [&] { build(std::move(children.second), 0, above_part); });
-    out.append(below_part, pair);
-    out.append(above_part, pair + 1);
-  } else {
-    build(std::move(children.first), pair, out);
-    build(std::move(children.second), pair + 1, out);
+  const uint32_t child = out.open_inner(slot, split);
+  if (!parallel) {
+    if (split.below > 0) build(std::move(below), child, out);
+    if (split.above > 0) build(std::move(above), child + 1, out);
+    return;
   }
-}
-
-int depth_limit(const BuildSettings& settings, size_t triangles) {
-  const double automatic = 8 + 1.3 * std::log2(std::max<double>(1, static_cast<double>(triangles)));
-  return std::min(settings.max_depth > 0 ? settings.max_depth : static_cast<int>(std::lround(automatic)), kMaxDepth);
+  const auto graft = [&](uint32_t at) -> Subtree& {
+    return *out.grafts.emplace_back(at, std::make_unique<Subtree>()).part;
+  };
+  if (split.empty() != kNoneEmpty) {
+    const bool upper = split.below == 0;
+    build(std::move(upper ? above : below), 0, graft(child + upper));
+    return;
+  }
+  Subtree& lower = graft(child);
+  Subtree& upper = graft(child + 1);
+  parallel_tasks([&, &b = below] { build(std::move(b), 0, lower); },
+                 [&, &a = above] { build(std::move(a), 0, upper); });
 }
 
 void Builder::report(double weight) {
@@ -241,15 +260,21 @@ void Builder::report(double weight) {
 Result<Tree> build_tree(const Lattice& lattice, std::span<const Vec3u> vertices,
                         std::span<const std::array<uint32_t, 3>> triangles, const BuildSettings& settings,
                         const Progress& progress) {
-  const Context context{vertices, triangles, lattice.step(), settings.costs, depth_limit(settings, triangles.size())};
+  Context context{vertices, triangles, lattice.step(), settings.costs, 0, std::min(settings.max_depth, kMaxDepth)};
+  context.area_price =
+      settings.costs.byte_price * context.half_area_of(lattice.cube()) / static_cast<double>(triangles.size());
   Builder builder(context, progress);
-  Subtree whole;
-  builder.build(builder.root(lattice.cube()), 0, whole);
+  Subtree parts;
+  builder.build(builder.root(lattice), 0, parts);
   if (builder.cancelled()) return Error{ErrorClass::interrupted, "", "interrupted"};
-  if (whole.nodes.size() > kMaxLink || whole.references.size() > 0xffffffffu) {
+  if (parts.total_nodes() > kMaxChild || parts.total_references() > 0xffffffffu) {
     return Error{ErrorClass::resource, "",
-                 "the tree outgrows what a node can address (2^30 nodes, 2^32 references): split the mesh"};
+                 "the tree outgrows what a node can address (2^28 nodes, 2^32 references): split the mesh"};
   }
+  Subtree whole;
+  whole.nodes.reserve(parts.total_nodes());
+  whole.references.reserve(parts.total_references());
+  parts.flatten_into(whole, 0);
   return Tree{std::move(whole.nodes), std::move(whole.references)};
 }
 

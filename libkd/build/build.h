@@ -19,7 +19,7 @@ namespace kd::build {
 
 struct BuildSettings {
   SahCosts costs;
-  int max_depth = 0;  // in inner nodes, at most kMaxDepth; 0: 8 + 1.3 log2(triangles), rounded
+  int max_depth = kMaxDepth;  // in inner nodes, at most kMaxDepth
 };
 
 struct Tree {

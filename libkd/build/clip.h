@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <optional>
 
 #include "core/box.h"
 #include "core/vec.h"
@@ -17,11 +16,16 @@ inline Box3u bounds(const LatticeTriangle& t) {
   return box;
 }
 
-/// The smallest lattice box around the triangle's part in the closed cell, or one a step larger: never too small.
-/// Nothing if the triangle has no point in the cell.
+/// Empty where the triangle has no point in the cell.
+struct SplitBounds {
+  Box3u below, above;
+};
+
+/// The smallest lattice boxes around the triangle's parts in the two closed cells that a plane inside `cell` makes of
+/// it, or boxes a step larger: never too small.
 ///
 /// Sutherland and Hodgman's clipping, in double. Coordinates that are known exactly are cut exactly; those that were
 /// computed are taken to be uncertain by 2^-20 steps, far more than they are, always to the larger side.
-std::optional<Box3u> clipped_bounds(const LatticeTriangle& triangle, const Box3u& cell);
+SplitBounds split_bounds(const LatticeTriangle& triangle, const Box3u& cell, int axis, uint32_t plane);
 
 }  // namespace kd::build

@@ -16,14 +16,15 @@ struct Context {
   std::span<const std::array<uint32_t, 3>> triangles;
   Vec3d step;  // the lattice's, model units
   SahCosts costs;
-  int max_depth = 0;  // in inner nodes
+  double area_price = 0;  // SAH cost of a byte, times the surface of the cell it is spent on
+  int max_depth = 0;      // in inner nodes
 
   LatticeTriangle corners(uint32_t triangle) const {
     const auto& t = triangles[triangle];
     return {vertices[t[0]], vertices[t[1]], vertices[t[2]]};
   }
-  /// What a leaf of this many triangles costs: a split that is not cheaper is not made.
-  double leaf_cost(uint32_t count) const { return costs.intersection * count; }
+  /// Half of a cell's surface, where rays are: in model space.
+  double half_area_of(const Box3u& cell) const { return half_area(vec_cast<double>(cell.extent()) * step); }
 };
 
 }  // namespace kd::build

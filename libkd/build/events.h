@@ -5,7 +5,6 @@
 // triangles that lie in a split plane.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -41,12 +40,7 @@ inline void append_events(const Box3u& box, int axis, uint32_t triangle, EventLi
   }
 }
 
-/// Sorts `fresh` and merges it into the sorted `events`.
-inline void merge_events(EventList& events, EventList& fresh) {
-  std::sort(fresh.begin(), fresh.end());
-  const auto middle = static_cast<std::ptrdiff_t>(events.size());
-  events.insert(events.end(), fresh.begin(), fresh.end());
-  std::inplace_merge(events.begin(), events.begin() + middle, events.end());
-}
+/// Sorts events that stand in ascending order of their triangles, by a radix sort of their places, of `bits` bits.
+void sort_root_events(EventList& events, int bits);
 
 }  // namespace kd::build

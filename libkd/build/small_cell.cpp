@@ -3,108 +3,269 @@
 #include <algorithm>
 #include <span>
 
+#include "build/cost.h"
+#include "build/lanes.h"
 #include "build/split.h"
 
 namespace kd::build {
 
 namespace {
 
-size_t collect_places(std::span<const BoxedTriangle> triangles, int axis, EventPlace* places) {
-  size_t count = 0;
-  for (const BoxedTriangle& t : triangles) {
-    const uint32_t lo = t.box.lo[axis], hi = t.box.hi[axis];
-    if (lo == hi) {
-      places[count++] = make_place(lo, EventKind::flat);
-    } else {
-      places[count++] = make_place(lo, EventKind::start);
-      places[count++] = make_place(hi, EventKind::end);
-    }
+Floats expected_tests(Floats n) {
+  Floats tests = n;
+  for (size_t i = 1; i <= 3; ++i) {  // up to 8 * kLinear
+    const auto& line = ExpectedTests::kLines[i];
+    tests = least(tests, static_cast<float>(line.intercept) + static_cast<float>(line.slope) * n);
   }
-  std::sort(places, places + count);
-  return count;
+  return tests;
 }
+static_assert(kSmallCell <= 8 * ExpectedTests::kLinear);
 
-Split choose_split(const Context& context, const Box3u& cell, std::span<const BoxedTriangle> triangles) {
-  EventPlace places[2 * kSmallCell];
-  const auto n = static_cast<uint32_t>(triangles.size());
-  Split best;
+/// The best split seen so far in each of eight lanes.
+struct Best {
+  Floats cost = splat(std::numeric_limits<float>::infinity());
+  Ints plane{}, below{}, above{}, kind{};  // kind: axis << 1 | flat_below
+
+  void consider(Floats c, Ints p, Ints b, Ints a, int k) {
+    const Ints lower = c < cost;
+    cost = lower ? c : cost;
+    plane = lower ? p : plane;
+    below = lower ? b : below;
+    above = lower ? a : above;
+    kind = lower ? splat(k) : kind;
+  }
+  Split split() const {
+    int best = 0;
+    for (int i = 1; i < kLanes; ++i) {
+      if (cost[i] < cost[best]) best = i;
+    }
+    Split s;
+    if (!(cost[best] < std::numeric_limits<float>::infinity())) return s;
+    return {cost[best],
+            kind[best] >> 1,
+            static_cast<uint32_t>(plane[best]),
+            (kind[best] & 1) != 0,
+            static_cast<uint32_t>(below[best]),
+            static_cast<uint32_t>(above[best])};
+  }
+};
+
+/// The prices and probabilities of one cell and axis, eight times.
+struct LaneCosts {
+  float traversal, intersection, kept, reference_bytes, node_bytes;
+  float constant, per_step;
+  int32_t lo, hi;
+
+  LaneCosts(const CellCosts& c, const PlaneProbability& p, const Box3u& cell, int axis)
+      : traversal(static_cast<float>(c.traversal)),
+        intersection(static_cast<float>(c.intersection)),
+        kept(static_cast<float>(c.kept)),
+        reference_bytes(static_cast<float>(c.byte * kReferenceBytes)),
+        node_bytes(static_cast<float>(c.byte * kNodeBytes)),
+        constant(static_cast<float>(p.constant)),
+        per_step(static_cast<float>(p.per_step)),
+        lo(static_cast<int32_t>(cell.lo[axis])),
+        hi(static_cast<int32_t>(cell.hi[axis])) {}
+
+  Floats split(Ints plane, Ints below, Ints above) const {
+    const Floats n_below = to_floats(below), n_above = to_floats(above);
+    const Floats p_below = constant + per_step * to_floats(plane - lo);
+    const Floats p_above = constant + per_step * to_floats(hi - plane);
+    const Floats sah =
+        traversal + intersection * (p_below * expected_tests(n_below) + p_above * expected_tests(n_above));
+    const Floats bytes = reference_bytes * (n_below + n_above) + 2 * node_bytes;
+    const Ints cuts_off_nothing = (below == 0) | (above == 0);
+    return cuts_off_nothing ? kept * sah + bytes : sah + (bytes + node_bytes);
+  }
+};
+
+/// Planes to consider: where boxes begin and end inside the cell, and its faces if a triangle lies in them.
+struct Candidates {
+  alignas(32) int32_t planes[2 * kSmallCell + kLanes];
+  size_t count = 0;
+  bool flats = false;  // some triangles lie across the axis
+
+  void add_if(bool wanted, int32_t plane) {
+    planes[count] = plane;
+    count += wanted;
+  }
+  Candidates(const int32_t* lo, const int32_t* hi, size_t n, int32_t cell_lo, int32_t cell_hi) {
+    bool flat = false;
+    for (size_t i = 0; i < n; ++i) {
+      add_if(lo[i] > cell_lo, lo[i]);
+      add_if(hi[i] < cell_hi, hi[i]);
+      flat |= lo[i] == hi[i];
+    }
+    flats = flat;
+    for (size_t i = count; i % kLanes != 0; ++i) planes[i] = count > 0 ? planes[0] : cell_lo;
+  }
+};
+
+/// The cheapest split of the cell, by counting: of each candidate plane, the boxes that reach below and above it.
+Split choose_split(const Context& context, const CellCosts& costs, const Box3u& cell, const BoxStack& stack,
+                   size_t first, size_t n) {
+  Best best;
   for (int axis = 0; axis < 3; ++axis) {
     if (cell.lo[axis] == cell.hi[axis]) continue;
-    const size_t count = collect_places(triangles, axis, places);
-    const Split split =
-        best_split(std::span<const EventPlace>(places, count), axis, cell, n, context.step, context.costs);
-    if (better(split, best)) best = split;
-  }
-  return best;
-}
-
-/// Copies to the top of the stack what of the triangles [first, end) belongs to one child.
-void push_child(const Context& context, const Box3u& child, const Split& split, bool below,
-                std::vector<BoxedTriangle>& stack, size_t first, size_t end) {
-  for (size_t i = first; i < end; ++i) {
-    BoxedTriangle t = stack[i];
-    const uint32_t lo = t.box.lo[split.axis], hi = t.box.hi[split.axis];
-    const bool in_plane = lo == split.plane && hi == split.plane;
-    const bool only_below = in_plane ? split.flat_left : hi <= split.plane;
-    const bool only_above = in_plane ? !split.flat_left : lo >= split.plane;
-    if (below ? only_above : only_below) continue;
-    if (!only_below && !only_above) {
-      const auto clipped = clipped_bounds(context.corners(t.triangle), child);
-      if (!clipped) continue;
-      t.box = *clipped;
+    const BoxStack::Interval& boxes = stack.axes[static_cast<size_t>(axis)];
+    const int32_t *lo = boxes.lo.data() + first, *hi = boxes.hi.data() + first;
+    const LaneCosts lane_costs(costs, PlaneProbability(cell, axis, context.step), cell, axis);
+    const Candidates candidates(lo, hi, n, lane_costs.lo, lane_costs.hi);
+    for (size_t c = 0; c < candidates.count; c += kLanes) {
+      const Ints plane = load(candidates.planes + c);
+      Ints below{}, above{};
+      for (size_t i = 0; i < n; ++i) {
+        below -= splat(lo[i]) < plane;
+        above -= splat(hi[i]) > plane;
+      }
+      if (!candidates.flats) {
+        best.consider(lane_costs.split(plane, below, above), plane, below, above, axis << 1);
+        continue;
+      }
+      Ints flat{};
+      for (size_t i = 0; i < n; ++i) flat -= (splat(lo[i]) == plane) & (splat(hi[i]) == plane);
+      // At the cell's own face a split is progress if it puts the triangles in the face into a flat cell of their own.
+      const Floats never = splat(std::numeric_limits<float>::infinity());
+      const Ints at_lo = plane == lane_costs.lo, at_hi = plane == lane_costs.hi;
+      const Ints all = flat == static_cast<int32_t>(n);
+      const Floats with_below = lane_costs.split(plane, below + flat, above);
+      const Floats with_above = lane_costs.split(plane, below, above + flat);
+      best.consider(at_hi | (at_lo & all) ? never : with_below, plane, below + flat, above, axis << 1 | 1);
+      best.consider(at_lo | (at_hi & all) ? never : with_above, plane, below, above + flat, axis << 1);
     }
-    stack.push_back(t);
   }
+  return best.split();
 }
 
-double make_leaf_of(const Context& context, std::span<const BoxedTriangle> triangles, uint32_t slot, Subtree& out) {
-  const auto count = static_cast<uint32_t>(triangles.size());
-  out.nodes[slot] = make_leaf(static_cast<uint32_t>(out.references.size()), count);
-  for (const BoxedTriangle& t : triangles) out.references.push_back(t.triangle);
-  return context.leaf_cost(count);
+class SmallCellBuilder {
+ public:
+  SmallCellBuilder(const Context& context, BoxStack& stack, Subtree& out)
+      : context_(context), stack_(stack), out_(out) {}
+
+  double build(const Box3u& cell, int depth, size_t first, uint32_t slot);
+
+ private:
+  double leaf(const CellCosts& costs, size_t first, size_t n, uint32_t slot);
+  size_t push_children(const Box3u& cell, const Split& split, bool boxes_matter, size_t first, size_t n);
+  void push_copy(size_t from);
+
+  const Context& context_;
+  BoxStack& stack_;
+  Subtree& out_;
+};
+
+double SmallCellBuilder::leaf(const CellCosts& costs, size_t first, size_t n, uint32_t slot) {
+  const auto count = static_cast<uint32_t>(n);
+  out_.nodes[slot] = make_leaf(static_cast<uint32_t>(out_.references.size()), count);
+  const auto begin = stack_.triangles.begin() + static_cast<std::ptrdiff_t>(first);
+  out_.references.insert(out_.references.end(), begin, begin + count);
+  return costs.leaf(count);
 }
 
-/// The probability that a ray which meets `cell` meets `child`.
-double probability(const Box3u& child, const Box3u& cell, Vec3d step) {
-  const double area = half_area(vec_cast<double>(cell.extent()) * step);
-  return area > 0 ? half_area(vec_cast<double>(child.extent()) * step) / area : 1;
+void SmallCellBuilder::push_copy(size_t from) {
+  for (BoxStack::Interval& axis : stack_.axes) {
+    axis.lo[stack_.size] = axis.lo[from];
+    axis.hi[stack_.size] = axis.hi[from];
+  }
+  stack_.triangles[stack_.size++] = stack_.triangles[from];
+}
+
+/// Pushes the triangles of the upper child, then those of the lower one, and returns where the latter begin. Triangles
+/// on both sides are clipped, unless neither child will look at its boxes.
+size_t SmallCellBuilder::push_children(const Box3u& cell, const Split& split, bool boxes_matter, size_t first,
+                                       size_t n) {
+  const auto plane = static_cast<int32_t>(split.plane);
+  const BoxStack::Interval& along = stack_.axes[static_cast<size_t>(split.axis)];
+  stack_.reserve(2 * n);
+  std::array<Box3u, kSmallCell> lower_boxes;
+  size_t clipped = 0;
+  for (size_t i = first; i < first + n; ++i) {
+    const int32_t lo = along.lo[i], hi = along.hi[i];
+    if (lo == hi && lo == plane ? split.flat_below : hi <= plane) continue;
+    if (lo >= plane || !boxes_matter) {
+      push_copy(i);
+      continue;
+    }
+    const SplitBounds parts = split_bounds(context_.corners(stack_.triangles[i]), cell, split.axis, split.plane);
+    lower_boxes[clipped++] = parts.below;
+    if (!parts.above.empty()) stack_.push(stack_.triangles[i], parts.above);
+  }
+  const size_t lower_first = stack_.size;
+  clipped = 0;
+  for (size_t i = first; i < first + n; ++i) {
+    const int32_t lo = along.lo[i], hi = along.hi[i];
+    if (lo == hi && lo == plane ? !split.flat_below : lo >= plane) continue;
+    if (hi <= plane || !boxes_matter) {
+      push_copy(i);
+      continue;
+    }
+    const Box3u& part = lower_boxes[clipped++];
+    if (!part.empty()) stack_.push(stack_.triangles[i], part);
+  }
+  return lower_first;
+}
+
+double SmallCellBuilder::build(const Box3u& cell, int depth, size_t first, uint32_t slot) {
+  const size_t n = stack_.size - first;
+  const auto count = static_cast<uint32_t>(n);
+  const CellCosts costs(context_, cell);
+  const double leaf_cost = costs.leaf(count);
+  const auto close = [&] {
+    const double cost = leaf(costs, first, n, slot);
+    stack_.size = first;
+    return cost;
+  };
+  if (costs.hopeless(count) || depth >= context_.max_depth) return close();
+  const Split split = choose_split(context_, costs, cell, stack_, first, n);
+  if (split.cost >= leaf_cost || (count > ExpectedTests::kLinear && !pays(context_, cell, count, split)))
+    return close();
+
+  Box3u below = cell, above = cell;
+  below.hi.set(split.axis, split.plane);
+  above.lo.set(split.axis, split.plane);
+  const bool boxes_matter =
+      !CellCosts(context_, below).hopeless(split.below) || !CellCosts(context_, above).hopeless(split.above);
+  const size_t lower_first = push_children(cell, split, boxes_matter, first, n);
+
+  const size_t nodes_before = out_.nodes.size(), references_before = out_.references.size();
+  const uint32_t child = out_.open_inner(slot, split);
+  const PlaneProbability probability(cell, split.axis, context_.step);
+  double cost = costs.traversal + costs.byte * kNodeBytes;
+  if (split.below > 0) cost += probability.below(split.plane) * build(below, depth + 1, lower_first, child);
+  if (split.above > 0) cost += probability.above(split.plane) * build(above, depth + 1, first + n, child + 1);
+  if (cost < leaf_cost) {
+    stack_.size = first;
+    return cost;
+  }
+  out_.nodes.resize(nodes_before);
+  out_.references.resize(references_before);
+  return close();
 }
 
 }  // namespace
 
-double build_small_cell(const Context& context, const Box3u& cell, int depth, std::vector<BoxedTriangle>& stack,
-                        size_t first, uint32_t slot, Subtree& out) {
-  const size_t end = stack.size();
-  const auto triangles = [&] { return std::span<const BoxedTriangle>(stack).subspan(first, end - first); };
-  const auto count = static_cast<uint32_t>(end - first);
-  const double leaf_cost = context.leaf_cost(count);
-  const Split split = count > 0 && depth < context.max_depth ? choose_split(context, cell, triangles()) : Split{};
-  if (split.cost >= leaf_cost) {
-    const double cost = make_leaf_of(context, triangles(), slot, out);
-    stack.resize(first);
-    return cost;
+void BoxStack::reserve(size_t count) {
+  const size_t wanted = size + count;
+  if (wanted <= triangles.size()) return;
+  const size_t capacity = std::max(wanted, 2 * triangles.size());
+  for (Interval& axis : axes) {
+    axis.lo.resize(capacity);
+    axis.hi.resize(capacity);
   }
+  triangles.resize(capacity);
+}
 
-  const size_t nodes_before = out.nodes.size(), references_before = out.references.size();
-  const uint32_t pair = out.open_inner(slot, split.axis, split.plane);
-  double cost = context.costs.traversal;
-  const auto descend = [&](const Box3u& child, bool below, uint32_t child_slot) {
-    push_child(context, child, split, below, stack, first, end);
-    cost += probability(child, cell, context.step) *
-            build_small_cell(context, child, depth + 1, stack, end, child_slot, out);
-  };
-  Box3u below = cell, above = cell;
-  below.hi.set(split.axis, split.plane);
-  above.lo.set(split.axis, split.plane);
-  descend(below, true, pair);
-  descend(above, false, pair + 1);
-  if (cost >= leaf_cost) {
-    out.nodes.resize(nodes_before);
-    out.references.resize(references_before);
-    cost = make_leaf_of(context, triangles(), slot, out);
+void BoxStack::push(uint32_t triangle, const Box3u& box) {
+  for (int k = 0; k < 3; ++k) {
+    axes[static_cast<size_t>(k)].lo[size] = static_cast<int32_t>(box.lo[k]);
+    axes[static_cast<size_t>(k)].hi[size] = static_cast<int32_t>(box.hi[k]);
   }
-  stack.resize(first);
-  return cost;
+  triangles[size++] = triangle;
+}
+
+double build_small_cell(const Context& context, const Box3u& cell, int depth, BoxStack& stack, size_t first,
+                        uint32_t slot, Subtree& out) {
+  return SmallCellBuilder(context, stack, out).build(cell, depth, first, slot);
 }
 
 }  // namespace kd::build

@@ -1,12 +1,15 @@
 // A kd-tree node, as it is stored, mapped, uploaded and traversed: 8 bytes.
 //
 //   inner  word: the split plane's lattice coordinate, as a float32 (an integer, so exact)
-//          link: index of the first child << 2 | axis (0, 1, 2); the second child (the far side of the plane, higher
-//          coordinates) follows it, and the pair starts at an even index: one 16-byte line
+//          link: first << 4 | empty << 2 | axis (0, 1, 2)
 //   leaf   word: index of the leaf's first triangle reference
 //          link: number of references << 2 | 3
 //
-// Node 0 is the root; node 1 is an empty leaf that only keeps the pairs even. A child's index is greater than its
+// An inner node's lower child stands at index `first`, its upper one (the far side of the plane, higher coordinates) at
+// `first` + 1. Of `empty`, bit 0 says that the lower child is an empty leaf, bit 1 that the upper one is: then nothing
+// is stored for it, and the index belongs to some other node. A quarter of all cells are empty.
+//
+// Node 0 is the root; node 1 is the empty leaf that stands for all empty children. A child's index is greater than its
 // parent's.
 #pragma once
 
@@ -24,21 +27,29 @@ struct alignas(8) Node {
   friend bool operator==(const Node&, const Node&) = default;
 };
 
-constexpr uint32_t kMaxLink = (1u << 30) - 1;  // of a child's index and of a leaf's reference count
+constexpr uint32_t kEmptyLeaf = 1;              // index of the node that stands for all empty children
+constexpr uint32_t kMaxChild = (1u << 28) - 1;  // of a child's index
+constexpr uint32_t kMaxLeafReferences = (1u << 30) - 1;
 /// Longest path from the root to a leaf, in inner nodes: the size of the traversal's stack.
 constexpr int kMaxDepth = 64;
+
+/// Which children of an inner node are empty leaves, as bits.
+enum EmptyChildren : uint32_t { kNoneEmpty = 0, kLowerEmpty = 1, kUpperEmpty = 2 };
 
 KD_HD KD_INLINE float float_from_bits(uint32_t bits) { return std::bit_cast<float>(bits); }
 
 KD_HD KD_INLINE bool is_leaf(Node n) { return (n.link & 3) == 3; }
 KD_HD KD_INLINE int split_axis(Node n) { return static_cast<int>(n.link & 3); }
 KD_HD KD_INLINE float split_plane(Node n) { return float_from_bits(n.word); }
-KD_HD KD_INLINE uint32_t first_child(Node n) { return n.link >> 2; }
+/// The child on side 0 (lower) or 1 (upper): its index, kEmptyLeaf if it is empty.
+KD_HD KD_INLINE uint32_t child_of(Node n, uint32_t side) {
+  return (n.link >> (2 + side) & 1) != 0 ? kEmptyLeaf : (n.link >> 4) + side;
+}
 KD_HD KD_INLINE uint32_t first_reference(Node n) { return n.word; }
 KD_HD KD_INLINE uint32_t reference_count(Node n) { return n.link >> 2; }
 
-inline Node make_inner(int axis, uint32_t plane, uint32_t first_child_index) {
-  return {std::bit_cast<uint32_t>(static_cast<float>(plane)), first_child_index << 2 | static_cast<uint32_t>(axis)};
+inline Node make_inner(int axis, uint32_t plane, uint32_t first, uint32_t empty = kNoneEmpty) {
+  return {std::bit_cast<uint32_t>(static_cast<float>(plane)), first << 4 | empty << 2 | static_cast<uint32_t>(axis)};
 }
 inline Node make_leaf(uint32_t first, uint32_t count) { return {first, count << 2 | 3u}; }
 

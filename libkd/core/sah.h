@@ -1,5 +1,5 @@
 // The surface area heuristic for kd-trees (MacDonald and Booth 1990; Wald and Havran, "On building fast kd-trees for
-// ray tracing, and on doing that in O(N log N)", 2006): what a split is expected to cost a ray that meets the cell.
+// ray tracing, and on doing that in O(N log N)", 2006): costs relative to one another, areas as probabilities.
 #pragma once
 
 #include "core/vec.h"
@@ -7,19 +7,14 @@
 namespace kd {
 
 struct SahCosts {
-  double traversal = 1;
-  double intersection = 1.5;
-  double empty_bonus = 0.15;  // share of a split's cost that is forgiven where it cuts off empty space
+  double traversal = 1;       // of a step through an inner node
+  double intersection = 1.5;  // of a triangle test
+  double empty_bonus = 0.08;  // share of a split's cost that is forgiven where it cuts off empty space
+  /// What memory is worth: a split has to lower the tree's SAH cost by this much for each byte a triangle that it adds.
+  double byte_price = 0;
 };
 
 /// Half the surface of a box with these edges. Every use is a ratio of two.
 KD_HD KD_INLINE double half_area(Vec3d edges) { return edges.x * edges.y + edges.y * edges.z + edges.z * edges.x; }
-
-/// The expected cost of a split into cells that are met with probability p_left and p_right and hold n_left and n_right
-/// triangles. To compare with `intersection * n` of a leaf.
-inline double split_cost(const SahCosts& costs, double p_left, double p_right, uint32_t n_left, uint32_t n_right) {
-  const double cost = costs.traversal + costs.intersection * (p_left * n_left + p_right * n_right);
-  return n_left == 0 || n_right == 0 ? cost * (1 - costs.empty_bonus) : cost;
-}
 
 }  // namespace kd

@@ -68,9 +68,8 @@ KD_HD inline uint32_t traverse(const ObjectView& object, const LatticeRay& ray, 
       const int axis = split_axis(node);
       const float inverse = ray.inverse[axis];
       const float s = (split_plane(node) - ray.origin[axis]) * inverse;
-      const uint32_t first = first_child(node);
-      const uint32_t near = first + (inverse < 0 ? 1u : 0u);
-      const uint32_t far = first + (inverse < 0 ? 0u : 1u);
+      const uint32_t near = child_of(node, inverse < 0 ? 1 : 0);
+      const uint32_t far = child_of(node, inverse < 0 ? 0 : 1);
       if (s > s_exit) {
         index = near;
       } else if (s < s_entry) {

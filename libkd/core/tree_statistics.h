@@ -24,7 +24,8 @@ struct TreeStatistics {
   friend bool operator==(const TreeStatistics&, const TreeStatistics&) = default;
 };
 
-/// Calls visit(index, node, cell, depth) for every node of a valid tree, parents first; `cell` in lattice space.
+/// Calls visit(index, node, cell, depth) for every cell of a valid tree, parents first; `cell` in lattice space. Empty
+/// cells share the node kEmptyLeaf.
 template <class Visit>
 void for_each_node(std::span<const Node> nodes, const Lattice& lattice, const Visit& visit) {
   struct Open {
@@ -40,8 +41,8 @@ void for_each_node(std::span<const Node> nodes, const Lattice& lattice, const Vi
     const Node node = nodes[current.index];
     visit(current.index, node, current.cell, current.depth);
     if (is_leaf(node)) continue;
-    Open below{first_child(node), current.depth + 1, current.cell};
-    Open above{first_child(node) + 1, current.depth + 1, current.cell};
+    Open below{child_of(node, 0), current.depth + 1, current.cell};
+    Open above{child_of(node, 1), current.depth + 1, current.cell};
     const auto plane = static_cast<uint32_t>(split_plane(node));
     below.cell.hi.set(split_axis(node), plane);
     above.cell.lo.set(split_axis(node), plane);

@@ -33,9 +33,9 @@ struct AssetCamera {
 };
 
 struct AssetLight {
-  bool point = true;           // else directional
-  Vec3d position{0, 0, 0};     // of a point light
-  Vec3d direction{0, -1, 0};   // of a directional one: the way its light travels, length 1
+  bool point = true;          // else directional
+  Vec3d position{0, 0, 0};    // of a point light
+  Vec3d direction{0, -1, 0};  // of a directional one: the way its light travels, length 1
   Vec3f colour{1, 1, 1};
 };
 

@@ -13,7 +13,7 @@
 
 namespace kd::nkd {
 
-constexpr uint32_t kFormatVersion = 1;
+constexpr uint32_t kFormatVersion = 2;
 
 struct Provenance {
   std::string source_name;   // without folders

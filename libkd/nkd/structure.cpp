@@ -84,29 +84,31 @@ Check check_summary(const Summary& s) {
 
 Check check_nodes(const Geometry& geometry, int bits) {
   const auto nodes = geometry.nodes;
-  if (nodes.size() < 2 || nodes.size() % 2 != 0 || nodes.size() > kMaxLink) {
+  if (nodes.size() < 2 || nodes.size() > kMaxChild) {
     return found(Issue::node_count, fmt::format("{} nodes", nodes.size()));
   }
+  if (!is_leaf(nodes[kEmptyLeaf]) || reference_count(nodes[kEmptyLeaf]) != 0) return found(Issue::empty_leaf);
   // Parents precede children, so one pass from the front knows each node's depth when it comes to it. 0: no parent yet.
   std::vector<uint8_t> depth_of(nodes.size(), 0);
   depth_of[0] = 1;
   for (uint32_t i = 0; i < nodes.size(); ++i) {
     const Node node = nodes[i];
-    if (depth_of[i] == 0 && i != 1) return found(Issue::unreached_node, fmt::format("node {}", i));
+    if (depth_of[i] == 0 && i != kEmptyLeaf) return found(Issue::unreached_node, fmt::format("node {}", i));
     if (is_leaf(node)) {
       if (uint64_t{first_reference(node)} + reference_count(node) > geometry.references.size()) {
         return found(Issue::leaf_range, fmt::format("node {}", i));
       }
       continue;
     }
-    const uint32_t child = first_child(node);
-    if (i == 1 || child <= i || child % 2 != 0 || child >= nodes.size()) {
-      return found(Issue::child_index, fmt::format("node {}", i));
-    }
-    if (depth_of[child] != 0) return found(Issue::shared_child, fmt::format("node {}", i));
     if (depth_of[i] > kMaxDepth) return found(Issue::depth, fmt::format("node {}", i));
     if (!is_lattice_plane(split_plane(node), bits)) return found(Issue::plane, fmt::format("node {}", i));
-    depth_of[child] = depth_of[child + 1] = static_cast<uint8_t>(depth_of[i] + 1);
+    for (uint32_t side = 0; side < 2; ++side) {
+      const uint32_t child = child_of(node, side);
+      if (child == kEmptyLeaf) continue;
+      if (child <= i || child >= nodes.size()) return found(Issue::child_index, fmt::format("node {}", i));
+      if (depth_of[child] != 0) return found(Issue::shared_child, fmt::format("node {}", i));
+      depth_of[child] = static_cast<uint8_t>(depth_of[i] + 1);
+    }
   }
   return std::nullopt;
 }

@@ -83,7 +83,7 @@ Box3u widened(const Box3u& b) {
 
 void TreeCheck::leaves() const {
   for_each_node(geometry_.nodes, lattice_, [&](uint32_t index, Node node, const Box3u& cell, uint32_t) {
-    if (!is_leaf(node) || index == 1) return;
+    if (!is_leaf(node)) return;
     const auto refs = references(node);
     if (std::adjacent_find(refs.begin(), refs.end(), std::greater_equal<>()) != refs.end()) {
       findings_.add(Issue::unordered_leaf, index, fmt::format("node {}", index));
@@ -122,11 +122,11 @@ bool TreeCheck::covered(uint32_t triangle, const Corners& c, uint32_t index, con
   Box3u below = cell, above = cell;
   below.hi.set(axis, plane);
   above.lo.set(axis, plane);
-  const uint32_t child = first_child(node);
+  const uint32_t lower = child_of(node, 0), upper = child_of(node, 1);
   if (met.lo[axis] == plane && met.hi[axis] == plane) {
-    return covered(triangle, c, child, below) || covered(triangle, c, child + 1, above);
+    return covered(triangle, c, lower, below) || covered(triangle, c, upper, above);
   }
-  return covered(triangle, c, child, below) && covered(triangle, c, child + 1, above);
+  return covered(triangle, c, lower, below) && covered(triangle, c, upper, above);
 }
 
 void TreeCheck::coverage() const {

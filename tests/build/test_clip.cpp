@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "../core/shapes.h"
@@ -11,9 +12,22 @@
 
 using namespace kd;
 using namespace kd::test;
-using kd::build::clipped_bounds;
 
 namespace {
+
+/// The box of the triangle's part in the closed cell, found as one side of a cell that is split in two.
+std::optional<Box3u> clipped_bounds(const build::LatticeTriangle& t, const Box3u& cell, int axis, bool lower) {
+  Box3u parent = cell;
+  if (lower) {
+    parent.hi.set(axis, parent.hi[axis] + parent.hi[axis] / 7);
+  } else {
+    parent.lo.set(axis, parent.lo[axis] - parent.lo[axis] / 7);
+  }
+  const build::SplitBounds parts = build::split_bounds(t, parent, axis, lower ? cell.hi[axis] : cell.lo[axis]);
+  const Box3u& part = lower ? parts.below : parts.above;
+  if (part.empty()) return std::nullopt;
+  return part;
+}
 
 using Point = std::array<long double, 3>;
 
@@ -63,7 +77,7 @@ TEST_CASE("clip: never smaller than the triangle's part of the cell, never two s
         cell.extend(Vec3u{std::min(top, cell.lo.x + random.integer(0, size)),
                           std::min(top, cell.lo.y + random.integer(0, size)),
                           std::min(top, cell.lo.z + random.integer(0, size))});
-        const auto box = clipped_bounds(t, cell);
+        const auto box = clipped_bounds(t, cell, static_cast<int>(random.integer(0, 2)), random.chance(0.5));
         const bool meets = nkd::triangle_meets_box(t, cell, false);
         lost += meets && !box;
         if (!box) continue;
@@ -100,15 +114,20 @@ TEST_CASE("clip: never smaller than the triangle's part of the cell, never two s
 TEST_CASE("clip: known parts") {
   const build::LatticeTriangle t{Vec3u{0, 0, 0}, Vec3u{8, 0, 0}, Vec3u{0, 8, 0}};
   CHECK(build::bounds(t) == Box3u{{0, 0, 0}, {8, 8, 0}});
-  CHECK(clipped_bounds(t, {{0, 0, 0}, {8, 8, 8}}) == Box3u{{0, 0, 0}, {8, 8, 0}});
-  CHECK_FALSE(clipped_bounds(t, {{5, 5, 0}, {8, 8, 8}}));
-  CHECK_FALSE(clipped_bounds(t, {{0, 0, 1}, {8, 8, 8}}));
-  const auto corner = clipped_bounds(t, {{4, 4, 0}, {8, 8, 8}});
+  const build::SplitBounds halves = build::split_bounds(t, {{0, 0, 0}, {8, 8, 8}}, 0, 4);
+  CHECK(halves.below == Box3u{{0, 0, 0}, {4, 8, 0}});
+  CHECK(halves.above.lo == Vec3u{4, 0, 0});
+  CHECK(halves.above.hi.x == 8);
+  CHECK(halves.above.hi.y <= 5);
+  CHECK(halves.above.hi.z == 0);
+  CHECK_FALSE(clipped_bounds(t, {{5, 5, 0}, {8, 8, 8}}, 0, true));
+  CHECK_FALSE(clipped_bounds(t, {{0, 0, 1}, {8, 8, 8}}, 1, false));
+  const auto corner = clipped_bounds(t, {{4, 4, 0}, {8, 8, 8}}, 0, false);
   REQUIRE(corner);
   CHECK(corner->lo == Vec3u{4, 4, 0});
   CHECK(corner->hi.x <= 5);
   CHECK(corner->hi.y <= 5);
-  const auto band = clipped_bounds(t, {{2, 0, 0}, {3, 8, 8}});
+  const auto band = clipped_bounds(t, {{2, 0, 0}, {3, 8, 8}}, 1, true);
   REQUIRE(band);
   CHECK(band->lo == Vec3u{2, 0, 0});
   CHECK(band->hi.y <= 7);
@@ -119,7 +138,7 @@ TEST_CASE("clip: a sliver thinner than double can tell") {
   // Of this needle, 2e-11 steps of x lie in the cell's interior, and double has 5e-10 there.
   const build::LatticeTriangle needle{Vec3u{2094740, 54102, 2059874}, Vec3u{2094740, 2095866, 2059875},
                                       Vec3u{2094741, 2095866, 5302}};
-  const auto box = clipped_bounds(needle, {{2094740, 54202, 2059874}, {2094753, 54203, 2059883}});
+  const auto box = clipped_bounds(needle, {{2094740, 54202, 2059874}, {2094753, 54203, 2059883}}, 1, true);
   REQUIRE(box);
   CHECK(box->lo.x == 2094740);
   CHECK(box->hi.x == 2094741);

@@ -159,8 +159,8 @@ TEST_CASE("coverage: real meshes, down to where a triangle meets a cell") {
           Box3u low = cell, high = cell;
           low.hi.set(axis, plane);
           high.lo.set(axis, plane);
-          if (nkd::triangle_meets_box(t, low, false)) open.emplace_back(first_child(node), low);
-          if (nkd::triangle_meets_box(t, high, false)) open.emplace_back(first_child(node) + 1, high);
+          if (nkd::triangle_meets_box(t, low, false)) open.emplace_back(child_of(node, 0), low);
+          if (nkd::triangle_meets_box(t, high, false)) open.emplace_back(child_of(node, 1), high);
           continue;
         }
         const auto begin = tree.references.begin() + first_reference(node);

@@ -90,16 +90,22 @@ TEST_CASE("lattice: packing in one, two and three words") {
 }
 
 TEST_CASE("node: bits as stored") {
-  const Node inner = make_inner(2, lattice_max(24), 0x3ffffffe);
+  const Node inner = make_inner(2, lattice_max(24), kMaxChild - 1);
   CHECK_FALSE(is_leaf(inner));
   CHECK(split_axis(inner) == 2);
   CHECK(split_plane(inner) == 16777215.0f);
-  CHECK(first_child(inner) == 0x3ffffffe);
-  CHECK(make_inner(1, 1, 2) == Node{0x3f800000, 2 << 2 | 1});
-  const Node leaf = make_leaf(0xfffffff0, kMaxLink);
+  CHECK(child_of(inner, 0) == kMaxChild - 1);
+  CHECK(child_of(inner, 1) == kMaxChild);
+  CHECK(make_inner(1, 1, 2) == Node{0x3f800000, 2 << 4 | 1});
+  CHECK(child_of(make_inner(1, 1, 7, kLowerEmpty), 0) == kEmptyLeaf);
+  CHECK(child_of(make_inner(1, 1, 7, kLowerEmpty), 1) == 8);
+  CHECK(child_of(make_inner(1, 1, 7, kUpperEmpty), 0) == 7);
+  CHECK(child_of(make_inner(1, 1, 7, kUpperEmpty), 1) == kEmptyLeaf);
+  CHECK_FALSE(is_leaf(make_inner(2, 1, 7, kUpperEmpty)));
+  const Node leaf = make_leaf(0xfffffff0, kMaxLeafReferences);
   CHECK(is_leaf(leaf));
   CHECK(first_reference(leaf) == 0xfffffff0);
-  CHECK(reference_count(leaf) == kMaxLink);
+  CHECK(reference_count(leaf) == kMaxLeafReferences);
   CHECK(is_leaf(Node{}));
   CHECK(reference_count(Node{}) == 0);
   for (uint32_t plane : {0u, 1u, 12345u, (1u << 24) - 1}) {

@@ -32,8 +32,8 @@ struct IntervalTraversal {
     }
     const int axis = split_axis(node);
     const float s = (split_plane(node) - ray.origin[axis]) * ray.inverse[axis];
-    const uint32_t near = first_child(node) + (ray.inverse[axis] < 0 ? 1u : 0u);
-    const uint32_t far = first_child(node) + (ray.inverse[axis] < 0 ? 0u : 1u);
+    const uint32_t near = child_of(node, ray.inverse[axis] < 0 ? 1 : 0);
+    const uint32_t far = child_of(node, ray.inverse[axis] < 0 ? 0 : 1);
     if (s > exit) return visit(near, entry, exit);
     if (s < entry) return visit(far, entry, exit);
     const uint32_t met = visit(near, entry, s);
