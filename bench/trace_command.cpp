@@ -1,8 +1,6 @@
 // kdbench trace: rays against one object; from a file, or the shared ones made here from a camera. Its interface is how
 // the project is compared with anything else: keep it stable (bench/README.md).
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <cstring>
 #include <memory>
 #include <optional>
@@ -12,8 +10,7 @@
 #include "commands.h"
 #include "common/console.h"
 #include "common/report.h"
-#include "render/backend.h"
-#include "shared_rays.h"
+#include "measure_rays.h"
 #include "sys/atomic_file.h"
 #include "sys/hash.h"
 #include "sys/parallel.h"
@@ -27,9 +24,7 @@ using tools::Json;
 struct Options {
   std::string object, rays, camera, size = "1920x1080", mode = "closest", device = "auto", hits, json;
   unsigned threads = 0;
-  int repeat = 10;
-  int warm_ups = 3;
-  bool count_steps = false;
+  Effort effort;
 };
 
 Result<std::vector<render::RayRecord>> read_rays(const std::string& path) {
@@ -45,56 +40,25 @@ Result<std::vector<render::RayRecord>> read_rays(const std::string& path) {
   return rays;
 }
 
-constexpr uint64_t kMostPixels = uint64_t{1} << 26;  // three classes of rays and their hits: 10 GiB
-
-struct Size {
-  uint32_t width = 0, height = 0;
-};
-
-std::optional<Size> parse_size(const std::string& text) {
-  Size size;
-  const char* end = text.data() + text.size();
-  const auto width = std::from_chars(text.data(), end, size.width);
-  if (width.ec != std::errc{} || width.ptr == end || *width.ptr != 'x') return {};
-  const auto height = std::from_chars(width.ptr + 1, end, size.height);
-  if (height.ec != std::errc{} || height.ptr != end) return {};
-  const uint64_t pixels = uint64_t{size.width} * size.height;
-  const bool fits = size.width <= 65536 && size.height <= 65536 && pixels >= 1 && pixels <= kMostPixels;
-  return fits ? std::optional(size) : std::nullopt;
-}
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const size_t n = values.size();
-  return n % 2 ? values[n / 2] : 0.5 * (values[n / 2 - 1] + values[n / 2]);
-}
-
 /// What one class of rays came to.
-Json result_json(const char* name, const render::TraceJob& job, const render::TraceOutcome& outcome) {
-  uint64_t hits = 0;
-  double sum_t = 0;
-  for (const render::HitRecord& hit : outcome.hits) {
-    if (hit.primitive < 0) continue;
-    ++hits;
-    sum_t += hit.t;
-  }
-  const double seconds = median(outcome.seconds);
-  const auto count = static_cast<double>(job.rays.size());
-  Json j{{"class", name},
-         {"mode", job.mode == RayMode::any ? "any" : "closest"},
-         {"rays", job.rays.size()},
-         {"ray_hash", hash_text(ray_hash(job.rays))},
-         {"hits", hits},
-         {"mean_t", hits ? sum_t / static_cast<double>(hits) : 0},
+Json result_json(const RayMeasurement& m, bool count_steps) {
+  const std::vector<double>& seconds = m.outcome.seconds;
+  Json j{{"class", m.name},
+         {"mode", m.mode == RayMode::any ? "any" : "closest"},
+         {"rays", m.rays},
+         {"ray_hash", hash_text(m.ray_hash)},
+         {"hits", m.hit_count},
+         {"mean_t", m.mean_t},
          {"seconds",
-          {{"median", seconds},
-           {"min", *std::min_element(outcome.seconds.begin(), outcome.seconds.end())},
-           {"max", *std::max_element(outcome.seconds.begin(), outcome.seconds.end())}}},
-         {"mrays_per_second", count / seconds * 1e-6}};
-  if (job.count_steps && count > 0) {
-    j["steps_per_ray"] = {{"nodes", static_cast<double>(outcome.steps.nodes) / count},
-                          {"leaves", static_cast<double>(outcome.steps.leaves) / count},
-                          {"triangles", static_cast<double>(outcome.steps.triangles) / count}};
+          {{"median", m.seconds()},
+           {"min", *std::min_element(seconds.begin(), seconds.end())},
+           {"max", *std::max_element(seconds.begin(), seconds.end())}}},
+         {"mrays_per_second", m.mrays_per_second()}};
+  if (count_steps && m.rays > 0) {
+    const auto a_ray = [&](uint64_t count) { return static_cast<double>(count) / static_cast<double>(m.rays); };
+    const render::StepCounts& steps = m.outcome.steps;
+    j["steps_per_ray"] = {
+        {"nodes", a_ray(steps.nodes)}, {"leaves", a_ray(steps.leaves)}, {"triangles", a_ray(steps.triangles)}};
   }
   return j;
 }
@@ -110,79 +74,72 @@ void print_result(const Json& j) {
   }
 }
 
-class TraceRun {
- public:
-  TraceRun(const Options& options, nkd::ObjectFile object, render::Device device)
-      : options_(options), object_(std::move(object)), device_(std::move(device)) {
-    report_ = {{"version", 1},
-               {"tool", tools::version_text()},
-               {"object", options.object},
-               {"triangles", object_.geometry().triangle_count()},
-               {"device", device_.description},
-               {"warm_ups", options.warm_ups},
-               {"repeats", options.repeat}};
-  }
-
-  /// Traces one class of rays and adds what came of it to the report.
-  Result<std::vector<render::HitRecord>> trace(const char* name, std::span<const render::RayRecord> rays,
-                                               RayMode mode) {
-    const render::TraceJob job{rays, mode, options_.warm_ups, options_.repeat, options_.count_steps};
-    auto outcome = device_.backend->trace(object_, job, device_.index);
-    if (!outcome) return outcome.error();
-    report_["device_bytes"] = outcome->device_bytes;
-    report_["device_bytes_per_triangle"] =
-        static_cast<double>(outcome->device_bytes) / static_cast<double>(object_.geometry().triangle_count());
-    const Json result = result_json(name, job, *outcome);
-    if (options_.json != "-") print_result(result);
-    report_["results"].push_back(result);
-    return std::move(outcome->hits);
-  }
-
-  Result<std::vector<render::HitRecord>> trace_file() {
-    auto rays = read_rays(options_.rays);
-    if (!rays) return rays.error();
-    return trace("file", *rays, options_.mode == "any" ? RayMode::any : RayMode::closest);
-  }
-
-  /// The three shared classes; the hits of all of them, one after the other.
-  Result<std::vector<render::HitRecord>> trace_shared(Size size) {
-    auto camera = read_camera(options_.camera);
-    if (!camera) return camera.error();
-    const PrimaryRays primary = primary_rays(*camera, size.width, size.height);
-    auto hits = trace("primary", primary.rays, RayMode::closest);
-    if (!hits) return hits;
-    const SecondaryRays secondary = secondary_rays(object_, *camera, primary, *hits);
-    report_["shadow_rays_facing_light"] = secondary.facing;
-    auto shadow = trace("shadow", secondary.shadow, RayMode::any);
-    if (!shadow) return shadow;
-    auto diffuse = trace("diffuse", secondary.diffuse, RayMode::closest);
-    if (!diffuse) return diffuse;
-    hits->insert(hits->end(), shadow->begin(), shadow->end());
-    hits->insert(hits->end(), diffuse->begin(), diffuse->end());
-    return hits;
-  }
-
-  void print_bytes() const {
-    fmt::print("object on the device: {} bytes, {:.1f} a triangle\n", report_["device_bytes"].get<uint64_t>(),
-               report_["device_bytes_per_triangle"].get<double>());
-  }
-  const Json& report() const { return report_; }
-
- private:
-  const Options& options_;
-  nkd::ObjectFile object_;
-  render::Device device_;
-  Json report_;
+/// The rays that the options ask for, traced: one class from a file, or the three shared ones.
+struct Traced {
+  std::vector<RayMeasurement> classes;
+  std::optional<uint64_t> facing;  // shared rays only
 };
+
+Result<Traced> trace_file(const Options& o, const render::Device& device, const nkd::ObjectFile& object) {
+  auto rays = read_rays(o.rays);
+  if (!rays) return rays.error();
+  const RayMode mode = o.mode == "any" ? RayMode::any : RayMode::closest;
+  auto measured = measure_rays(device, object, "file", *rays, mode, o.effort);
+  if (!measured) return measured.error();
+  Traced out;
+  out.classes.push_back(std::move(*measured));
+  return out;
+}
+
+Result<Traced> trace_shared(const Options& o, const render::Device& device, const nkd::ObjectFile& object,
+                            ImageSize size) {
+  auto camera = read_camera(o.camera);
+  if (!camera) return camera.error();
+  SharedTrace shared(*camera, size);
+  auto measured = shared.measure(device, object, o.effort);
+  if (!measured) return measured.error();
+  Traced out{{}, shared.facing()};
+  for (RayMeasurement& m : *measured) out.classes.push_back(std::move(m));
+  return out;
+}
+
+Json report_json(const Options& o, const render::Device& device, const nkd::ObjectFile& object, const Traced& traced) {
+  const size_t triangles = object.geometry().triangle_count();
+  const uint64_t bytes = traced.classes.back().outcome.device_bytes;
+  Json j{{"version", 1},
+         {"tool", tools::version_text()},
+         {"object", o.object},
+         {"triangles", triangles},
+         {"device", device.description},
+         {"warm_ups", o.effort.warm_ups},
+         {"repeats", o.effort.repeats},
+         {"device_bytes", bytes},
+         {"device_bytes_per_triangle", static_cast<double>(bytes) / static_cast<double>(triangles)}};
+  for (const RayMeasurement& m : traced.classes) j["results"].push_back(result_json(m, o.effort.count_steps));
+  if (traced.facing) j["shadow_rays_facing_light"] = *traced.facing;
+  return j;
+}
+
+void print_report(const Json& report) {
+  for (const Json& result : report["results"]) print_result(result);
+  fmt::print("object on the device: {} bytes, {:.1f} a triangle\n", report["device_bytes"].get<uint64_t>(),
+             report["device_bytes_per_triangle"].get<double>());
+}
+
+/// The hits of all classes, one after the other.
+Result<void> write_hits(const std::string& path, const Traced& traced) {
+  std::vector<render::HitRecord> hits;
+  for (const RayMeasurement& m : traced.classes) hits.insert(hits.end(), m.outcome.hits.begin(), m.outcome.hits.end());
+  return write_file(path, std::as_bytes(std::span(hits)));
+}
 
 Result<void> trace(const Options& o) {
   const ThreadLimit limit(o.threads);
   if (o.rays.empty() == o.camera.empty()) {
     return Error{ErrorClass::usage, "", "name a file of rays or --camera, one of the two (see kdbench trace --help)"};
   }
-  const std::optional<Size> size = parse_size(o.size);
-  if (!size)
-    return Error{ErrorClass::usage, "--size " + o.size, "not a size such as 1920x1080, of at most 2^26 pixels"};
+  auto size = parse_size(o.size);
+  if (!size) return size.error();
   if (auto usable = tools::check_outputs({o.hits, o.json}, {o.object, o.rays, o.camera}); !usable) return usable;
   auto device = render::choose_device(o.device);
   if (!device) return device.error();
@@ -190,15 +147,15 @@ Result<void> trace(const Options& o) {
   if (!object) return object.error();
   if (o.json != "-") fmt::print("{} on {}\n", o.object, device->description);
 
-  TraceRun run(o, std::move(*object), std::move(*device));
-  auto hits = o.rays.empty() ? run.trace_shared(*size) : run.trace_file();
-  if (!hits) return hits.error();
-  if (o.json != "-") run.print_bytes();
+  auto traced = o.rays.empty() ? trace_shared(o, *device, *object, *size) : trace_file(o, *device, *object);
+  if (!traced) return traced.error();
+  const Json report = report_json(o, *device, *object, *traced);
+  if (o.json != "-") print_report(report);
   if (!o.hits.empty()) {
-    if (auto written = write_file(o.hits, std::as_bytes(std::span(*hits))); !written) return written;
+    if (auto written = write_hits(o.hits, *traced); !written) return written;
   }
   if (o.json.empty()) return {};
-  return tools::write_report(o.json, run.report());
+  return tools::write_report(o.json, report);
 }
 
 }  // namespace
@@ -217,11 +174,13 @@ Command trace_command(CLI::App& app) {
   c->add_option("--threads", o->threads, "CPU threads; 0: all cores")
       ->check(tools::whole_number(0, 4096))
       ->capture_default_str();
-  c->add_option("--repeat", o->repeat, "Timed runs")->check(tools::whole_number(1, 100000))->capture_default_str();
-  c->add_option("--warm-up", o->warm_ups, "Untimed runs before them")
+  c->add_option("--repeat", o->effort.repeats, "Timed runs")
+      ->check(tools::whole_number(1, 100000))
+      ->capture_default_str();
+  c->add_option("--warm-up", o->effort.warm_ups, "Untimed runs before them")
       ->check(tools::whole_number(0, 1000))
       ->capture_default_str();
-  c->add_flag("--count", o->count_steps, "Count nodes, leaves and triangles a ray (CPU)");
+  c->add_flag("--count", o->effort.count_steps, "Count nodes, leaves and triangles a ray (CPU)");
   c->add_option("--hits", o->hits, "Write the hits: float t, int32 primitive, float u, v, 16 bytes each");
   c->add_option("--json", o->json, "Write a JSON report to this file, or to stdout (-)");
   return {c, [o] {
