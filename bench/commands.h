@@ -14,6 +14,7 @@ struct Command {
   std::function<int()> run;
 };
 
+Command sweep_command(CLI::App& app);
 Command trace_command(CLI::App& app);
 
 }  // namespace kd::bench

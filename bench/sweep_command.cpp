@@ -1,0 +1,143 @@
+// kdbench sweep: one mesh built with many settings, and the shared rays traced through each tree: a row of figures a
+// setting. Rows are printed as they are known and the CSV file grows with them, so that a run cut short is not lost.
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "commands.h"
+#include "common/console.h"
+#include "kdbuild/compile.h"
+#include "measure_rays.h"
+#include "mesh/normalise.h"
+#include "mesh/read_mesh.h"
+#include "scratch_folder.h"
+#include "sweep_settings.h"
+#include "sys/atomic_file.h"
+#include "sys/parallel.h"
+#include "table.h"
+
+namespace kd::bench {
+
+namespace {
+
+struct Options {
+  std::string mesh, camera, size = "1920x1080", device = "auto", csv;
+  SweepLists lists;
+  unsigned threads = 0;
+  Effort effort;
+};
+
+/// How many triangles an object of this mesh has: what automatic depths follow from.
+Result<size_t> count_triangles(const std::string& path) {
+  auto mesh = mesh::read_mesh(path, {});
+  if (!mesh) return mesh.error();
+  mesh::clean(*mesh);
+  if (mesh->triangles.empty()) return Error{ErrorClass::mesh, path, "cleaning leaves none of its triangles"};
+  return mesh::normalise(*mesh, kDefaultLatticeBits).triangles.size();
+}
+
+Table empty_table() {
+  return Table({"costs", "bonus", "depth", "SAH cost", "refs/tri", "nodes/tri", "deepest", ".nkd B/tri", "device B/tri",
+                "build s", "primary", "shadow", "bounce"},
+               7);
+}
+
+std::vector<std::string> row(const SweepPoint& point, const tools::CompileReport& r,
+                             const std::array<RayMeasurement, 3>& rays) {
+  const auto a_triangle = [&](uint64_t count) { return static_cast<double>(count) / static_cast<double>(r.triangles); };
+  const auto speed = [](const RayMeasurement& m) { return fmt::format("{:.2f}", m.mrays_per_second()); };
+  return {point.costs,
+          point.bonus,
+          point.depth,
+          fmt::format("{:.2f}", r.tree.sah_cost),
+          fmt::format("{:.2f}", a_triangle(r.references)),
+          fmt::format("{:.2f}", a_triangle(r.tree.inner_nodes + r.tree.leaves)),
+          fmt::format("{}", r.tree.depth),
+          fmt::format("{:.1f}", a_triangle(r.bytes)),
+          fmt::format("{:.1f}", a_triangle(rays[0].outcome.device_bytes)),
+          fmt::format("{:.3f}", r.seconds.build),
+          speed(rays[0]),
+          speed(rays[1]),
+          speed(rays[2])};
+}
+
+Result<void> sweep(const Options& o) {
+  const ThreadLimit limit(o.threads);
+  tools::catch_interrupts();
+  auto size = parse_size(o.size);
+  if (!size) return size.error();
+  if (auto valid = sweep_points(o.lists, 1); !valid) return valid.error();
+  if (auto usable = tools::check_outputs({o.csv}, {o.mesh, o.camera}); !usable) return usable;
+  auto device = render::choose_device(o.device);
+  if (!device) return device.error();
+  auto camera = read_camera(o.camera);
+  if (!camera) return camera.error();
+  auto triangles = count_triangles(o.mesh);
+  if (!triangles) return triangles.error();
+  auto points = sweep_points(o.lists, *triangles);
+  if (!points) return points.error();
+  auto scratch = ScratchFolder::create();
+  if (!scratch) return scratch.error();
+
+  fmt::print("{}: {} triangles, built on {} threads; {}, {}, Mrays/s, median of {}; SAH cost at 1 : 1.5\n\n", o.mesh,
+             *triangles, thread_count(), device->description, o.size, o.effort.repeats);
+  SharedTrace shared(*camera, *size);
+  Table table = empty_table();
+  fmt::print("{}", table.head());
+  for (const SweepPoint& point : *points) {
+    std::fflush(stdout);
+    const std::string object_path = scratch->file("object.nkd");
+    tools::CompileSettings settings;
+    settings.tree = point.settings;
+    auto report = tools::compile(o.mesh, object_path, settings, tools::progress_bar("", true));
+    if (!report) return report.error();
+    auto object = nkd::ObjectFile::open(object_path);
+    if (!object) return object.error();
+    auto rays = shared.measure(*device, *object, o.effort);
+    if (!rays) return rays.error();
+    table.add(row(point, *report, *rays));
+    fmt::print("{}", table.last_row());
+    if (o.csv.empty()) continue;
+    if (auto written = write_file(o.csv, table.csv()); !written) return written;
+  }
+  return {};
+}
+
+}  // namespace
+
+Command sweep_command(CLI::App& app) {
+  auto o = std::make_shared<Options>();
+  CLI::App* c = app.add_subcommand("sweep", "Build a mesh with many settings and trace the shared rays through each");
+  c->add_option("mesh", o->mesh, "A mesh, as kdbuild reads it")->required();
+  c->add_option("--camera", o->camera, "The camera of the shared rays (13 numbers)")->required();
+  c->add_option("--size", o->size, "Pixels of the shared rays, WxH")->capture_default_str();
+  c->add_option("--costs", o->lists.costs, "Costs of a traversal step and a triangle test: T:I,T:I,...")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->capture_default_str();
+  c->add_option("--bonus", o->lists.bonuses, "Shares of a split's cost forgiven where it cuts off empty space: B,B,...")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->capture_default_str();
+  c->add_option("--depth", o->lists.depths, "Depth limits: auto, auto+N, auto-N or N, ...")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->capture_default_str();
+  c->add_option("--device", o->device, "auto, cpu, cuda or cuda:N")->capture_default_str();
+  c->add_option("--threads", o->threads, "CPU threads; 0: all cores")
+      ->check(tools::whole_number(0, 4096))
+      ->capture_default_str();
+  c->add_option("--repeat", o->effort.repeats, "Timed runs")
+      ->check(tools::whole_number(1, 100000))
+      ->capture_default_str();
+  c->add_option("--warm-up", o->effort.warm_ups, "Untimed runs before them")
+      ->check(tools::whole_number(0, 1000))
+      ->capture_default_str();
+  c->add_option("--csv", o->csv, "Write the rows to this file too, as CSV");
+  return {c, [o] {
+            const auto done = sweep(*o);
+            return done ? 0 : tools::fail(kKdbench, done.error());
+          }};
+}
+
+}  // namespace kd::bench

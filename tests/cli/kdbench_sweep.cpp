@@ -1,0 +1,99 @@
+// kdbench sweep, from outside.
+#include <sstream>
+
+#include <doctest/doctest.h>
+
+#include "cli/run_tool.h"
+
+using namespace kd;
+using namespace kd::test;
+
+namespace {
+
+using Rows = std::vector<std::vector<std::string>>;
+
+Rows parse_csv(const std::string& text) {
+  Rows rows;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    rows.emplace_back();
+    std::istringstream cells(line);
+    for (std::string cell; std::getline(cells, cell, ',');) rows.back().push_back(cell);
+  }
+  return rows;
+}
+
+/// A sweep over the icosphere; the CSV's rows, heads first.
+Rows sweep(const Terminal& t, const Arguments& lists) {
+  t.write("cam.txt", "0 0 3  0 0 0  0 1 0  45  2 2 2\n");
+  Arguments arguments{"sweep",    "--camera", "cam.txt", "--size",   "16x16",     "--device", "cpu",
+                      "--repeat", "1",        "--csv",   "rows.csv", "--warm-up", "0"};
+  arguments.insert(arguments.end(), lists.begin(), lists.end());
+  arguments.push_back(data_file("icosphere.ply"));
+  const std::string out = t.succeeds("kdbench", arguments).out;
+  Rows rows = parse_csv(t.read("rows.csv"));
+  REQUIRE(!rows.empty());
+  for (const auto& row : rows) {
+    REQUIRE(row.size() == rows[0].size());
+    CHECK(out.find(row[3]) != std::string::npos);
+  }
+  return rows;
+}
+
+}  // namespace
+
+TEST_SUITE("kdbench sweep") {
+  TEST_CASE("a row for every combination, depths fastest") {
+    const Terminal t;
+    const Rows rows = sweep(t, {"--costs", "1:1.5,15:20", "--bonus", "0.1,0.2", "--depth", "6,auto"});
+    REQUIRE(rows.size() == 1 + 8);
+    CHECK(rows[0][0] == "costs");
+    CHECK(std::vector(rows[1].begin(), rows[1].begin() + 3) == std::vector<std::string>{"1:1.5", "0.1", "6"});
+    CHECK(std::vector(rows[2].begin(), rows[2].begin() + 3) == std::vector<std::string>{"1:1.5", "0.1", "auto"});
+    CHECK(std::vector(rows[8].begin(), rows[8].begin() + 3) == std::vector<std::string>{"15:20", "0.2", "auto"});
+    CHECK(rows[1][6] == "6");
+    CHECK(std::stod(rows[1][3]) > std::stod(rows[2][3]));  // a depth of 6 costs
+  }
+
+  TEST_CASE("the figures of a tree are those kdbuild gives") {
+    const Terminal t;
+    const Rows rows = sweep(t, {"--costs", "1:1.5", "--bonus", "0.15", "--depth", "auto"});
+    const auto stats = t.report("kdbuild", {"build", data_file("icosphere.ply"), "-o", "s.nkd", "--stats", "-"});
+    REQUIRE(rows.size() == 2);
+    CHECK(std::stod(rows[1][3]) == doctest::Approx(stats["tree"]["sah_cost"].get<double>()).epsilon(1e-3));
+    CHECK(std::stod(rows[1][4]) == doctest::Approx(stats["tree"]["references"].get<double>() / 1280).epsilon(1e-2));
+    CHECK(std::stod(rows[1][7]) == doctest::Approx(stats["bytes"]["per_triangle"].get<double>()).epsilon(1e-2));
+  }
+
+  TEST_CASE("auto+0 is the builder's own depth limit") {
+    const Terminal t;
+    const Rows rows = sweep(t, {"--costs", "1:8", "--bonus", "0.05", "--depth", "auto,auto+0,auto+1"});
+    REQUIRE(rows.size() == 4);
+    for (size_t column = 3; column < 9; ++column) CHECK(rows[1][column] == rows[2][column]);
+    CHECK(rows[2][6] != rows[3][6]);  // the limit counts: one more changes the tree
+  }
+
+  TEST_CASE("errors") {
+    const Terminal t;
+    t.write("cam.txt", "0 0 3  0 0 0  0 1 0  45  2 2 2\n");
+    const std::string mesh = data_file("icosphere.ply");
+    const auto fails = [&](Arguments more, ErrorClass error_class, const std::vector<std::string>& fragments) {
+      Arguments arguments{"sweep", mesh, "--camera", "cam.txt", "--device", "cpu"};
+      arguments.insert(arguments.end(), more.begin(), more.end());
+      t.fails("kdbench", arguments, error_class, fragments);
+    };
+    for (const char* costs : {"1", "1:", ":1", "0:1", "1:-1", "1:1.5x", "1:nan", "1:1:1"}) {
+      fails({"--costs", costs}, ErrorClass::usage, {"--costs", costs});
+    }
+    for (const char* bonus : {"-0.1", "1", "x", "nan"}) fails({"--bonus", bonus}, ErrorClass::usage, {"--bonus"});
+    for (const char* depth : {"0", "65", "auto*2", "auto+", "auto+-1", "auto+65", "deep"}) {
+      fails({"--depth", depth}, ErrorClass::usage, {"--depth", depth});
+    }
+    fails({"--size", "0x3"}, ErrorClass::usage, {"--size"});
+    fails({"--csv", "gone/rows.csv"}, ErrorClass::output, {"gone/rows.csv"});
+    fails({"--csv", "cam.txt"}, ErrorClass::usage, {"cam.txt"});
+    t.fails("kdbench", {"sweep", "gone.ply", "--camera", "cam.txt"}, ErrorClass::missing, {"gone.ply"});
+    t.fails("kdbench", {"sweep", mesh, "--camera", "gone.txt"}, ErrorClass::missing, {"gone.txt"});
+    t.fails("kdbench", {"sweep", mesh}, ErrorClass::usage, {"--camera"});
+  }
+}
