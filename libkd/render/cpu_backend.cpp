@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "render/expand.h"
 #include "render/pipeline.h"
 #include "render/stage_times.h"
 #include "sys/parallel.h"
@@ -14,17 +15,6 @@ namespace kd::render {
 namespace {
 
 constexpr size_t kPixelGrain = 1024;
-constexpr size_t kTriangleGrain = 8192;
-
-std::vector<TriangleVertices> expand_triangles(const nkd::Geometry& geometry, int bits) {
-  std::vector<TriangleVertices> triangles(geometry.triangle_count());
-  parallel_ranges(triangles.size(), kTriangleGrain, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      triangles[i] = expand_triangle(geometry.vertices.data(), geometry.triangles.data() + 3 * i, bits);
-    }
-  });
-  return triangles;
-}
 
 template <class T>
 const T* data_or_null(std::span<const T> s) {
