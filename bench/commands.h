@@ -14,6 +14,7 @@ struct Command {
   std::function<int()> run;
 };
 
+Command build_command(CLI::App& app);
 Command sweep_command(CLI::App& app);
 Command trace_command(CLI::App& app);
 

@@ -24,7 +24,7 @@ TEST_SUITE("reports") {
   }
 
   TEST_CASE("the schemas are of one draft, and closed") {
-    for (const char* name : {"kdbuild-stats", "kdrender-stats", "kdbench-trace"}) {
+    for (const char* name : {"kdbuild-stats", "kdrender-stats", "kdbench-trace", "kdbench-build"}) {
       const json schema = read_schema(name);
       CHECK(schema["$schema"] == "https://json-schema.org/draft/2020-12/schema");
       CHECK(schema["additionalProperties"] == false);

@@ -1,0 +1,17 @@
+#include "embree_build.h"
+
+namespace kd::bench {
+
+namespace {
+
+Error absent() { return {ErrorClass::device, "Embree", "Embree 3 was not found when kdbench was configured"}; }
+
+}  // namespace
+
+Result<std::string> embree_version() { return absent(); }
+
+Result<double> embree_build_seconds(std::span<const Vec3f>, std::span<const std::array<uint32_t, 3>>, EmbreeQuality) {
+  return absent();
+}
+
+}  // namespace kd::bench
