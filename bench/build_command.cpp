@@ -70,8 +70,11 @@ Command build_command(CLI::App& app) {
                 "Share of a split's cost forgiven where it cuts off empty space")
       ->check(tools::number(0, 0.999))
       ->capture_default_str();
-  c->add_option("--max-depth", tree.max_depth, "Longest path in inner nodes; 0: automatic")
-      ->check(tools::whole_number(0, kMaxDepth))
+  c->add_option("--byte-price", tree.costs.byte_price, "SAH cost that a byte a triangle is worth")
+      ->check(tools::number(0, 1e6))
+      ->capture_default_str();
+  c->add_option("--max-depth", tree.max_depth, "Longest path in inner nodes")
+      ->check(tools::whole_number(1, kMaxDepth))
       ->capture_default_str();
   c->add_option("--json", o->json, "Write a JSON report to this file, or to stdout (-)");
   return {c, [o] {

@@ -117,9 +117,9 @@ void print_circumstances(const tools::CompileSettings& settings, const BuildEffo
   const build::BuildSettings& s = settings.tree;
   fmt::print("{} on {}, {} cores; {}; {}\n", tools::version_text(), machine.processor, machine.cores, machine.compiler,
              embree ? *embree : fmt::format("no Embree column: {}", embree.error().what));
-  fmt::print("costs {} : {}, empty bonus {}, depth {}, {} bits; medians of {}; Embree on one thread\n",
-             s.costs.traversal, s.costs.intersection, s.costs.empty_bonus,
-             s.max_depth > 0 ? fmt::format("{}", s.max_depth) : "automatic", settings.bits, effort.repeats);
+  fmt::print("costs {} : {}, empty bonus {}, byte price {}, depth {}, {} bits; medians of {}; Embree on one thread\n",
+             s.costs.traversal, s.costs.intersection, s.costs.empty_bonus, s.costs.byte_price, s.max_depth, settings.bits,
+             effort.repeats);
 }
 
 void print_builds(std::span<const BuildMeasurement> measurements, const BuildEffort& effort) {
@@ -144,6 +144,7 @@ Json builds_json(std::span<const BuildMeasurement> measurements, const tools::Co
           {{"traversal_cost", s.costs.traversal},
            {"intersection_cost", s.costs.intersection},
            {"empty_bonus", s.costs.empty_bonus},
+           {"byte_price", s.costs.byte_price},
            {"max_depth", s.max_depth},
            {"bits", settings.bits}}},
          {"threads", effort.threads},

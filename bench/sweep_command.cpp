@@ -8,8 +8,6 @@
 #include "common/console.h"
 #include "kdbuild/compile.h"
 #include "measure_rays.h"
-#include "mesh/normalise.h"
-#include "mesh/read_mesh.h"
 #include "scratch_folder.h"
 #include "sweep_settings.h"
 #include "sys/atomic_file.h"
@@ -27,19 +25,10 @@ struct Options {
   Effort effort;
 };
 
-/// How many triangles an object of this mesh has: what automatic depths follow from.
-Result<size_t> count_triangles(const std::string& path) {
-  auto mesh = mesh::read_mesh(path, {});
-  if (!mesh) return mesh.error();
-  mesh::clean(*mesh);
-  if (mesh->triangles.empty()) return Error{ErrorClass::mesh, path, "cleaning leaves none of its triangles"};
-  return mesh::normalise(*mesh, kDefaultLatticeBits).triangles.size();
-}
-
 Table empty_table() {
-  return Table({"costs", "bonus", "depth", "SAH cost", "refs/tri", "nodes/tri", "deepest", ".nkd B/tri", "device B/tri",
+  return Table({"costs", "bonus", "price", "depth", "SAH cost", "refs/tri", "nodes/tri", "deepest", ".nkd B/tri", "device B/tri",
                 "build s", "primary", "shadow", "bounce"},
-               7);
+               8);
 }
 
 std::vector<std::string> row(const SweepPoint& point, const tools::CompileReport& r,
@@ -48,6 +37,7 @@ std::vector<std::string> row(const SweepPoint& point, const tools::CompileReport
   const auto speed = [](const RayMeasurement& m) { return fmt::format("{:.2f}", m.mrays_per_second()); };
   return {point.costs,
           point.bonus,
+          point.price,
           point.depth,
           fmt::format("{:.2f}", r.tree.sah_cost),
           fmt::format("{:.2f}", a_triangle(r.references)),
@@ -66,21 +56,18 @@ Result<void> sweep(const Options& o) {
   tools::catch_interrupts();
   auto size = parse_size(o.size);
   if (!size) return size.error();
-  if (auto valid = sweep_points(o.lists, 1); !valid) return valid.error();
+  auto points = sweep_points(o.lists);
+  if (!points) return points.error();
   if (auto usable = tools::check_outputs({o.csv}, {o.mesh, o.camera}); !usable) return usable;
   auto device = render::choose_device(o.device);
   if (!device) return device.error();
   auto camera = read_camera(o.camera);
   if (!camera) return camera.error();
-  auto triangles = count_triangles(o.mesh);
-  if (!triangles) return triangles.error();
-  auto points = sweep_points(o.lists, *triangles);
-  if (!points) return points.error();
   auto scratch = ScratchFolder::create();
   if (!scratch) return scratch.error();
 
-  fmt::print("{}: {} triangles, built on {} threads; {}, {}, Mrays/s, median of {}; SAH cost at 1 : 1.5\n\n", o.mesh,
-             *triangles, thread_count(), device->description, o.size, o.effort.repeats);
+  fmt::print("{}: built on {} threads; {}, {}, Mrays/s, median of {}; SAH cost at 1 : 1.5\n\n", o.mesh, thread_count(),
+             device->description, o.size, o.effort.repeats);
   SharedTrace shared(*camera, *size);
   Table table = empty_table();
   fmt::print("{}", table.head());
@@ -119,7 +106,11 @@ Command sweep_command(CLI::App& app) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->capture_default_str();
-  c->add_option("--depth", o->lists.depths, "Depth limits: auto, auto+N, auto-N or N, ...")
+  c->add_option("--price", o->lists.prices, "SAH costs that a byte a triangle is worth: P,P,...")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->capture_default_str();
+  c->add_option("--depth", o->lists.depths, "Depth limits, in inner nodes: N,N,...")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->capture_default_str();

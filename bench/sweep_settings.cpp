@@ -1,8 +1,6 @@
 #include "sweep_settings.h"
 
-#include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <optional>
 
 #include <fmt/format.h>
@@ -37,31 +35,21 @@ Result<double> parse_bonus(const std::string& text) {
   return Error{ErrorClass::usage, "--bonus " + text, "not a share of a split's cost, 0 or more and less than 1"};
 }
 
-/// What BuildSettings::max_depth says of 0; a test holds the two together.
-int automatic_depth(size_t triangles) {
-  return static_cast<int>(std::lround(8 + 1.3 * std::log2(static_cast<double>(triangles))));
+Result<double> parse_price(const std::string& text) {
+  const auto price = parse<double>(text);
+  if (price && *price >= 0 && *price <= 1e6) return *price;
+  return Error{ErrorClass::usage, "--price " + text, "not a cost of a byte a triangle, 0 or more"};
 }
 
-/// "auto" is left to the builder.
-Result<int> parse_depth(const std::string& text, size_t triangles) {
-  const std::string_view given = text;
-  if (given == "auto") return 0;
-  if (given.starts_with("auto+") || given.starts_with("auto-")) {
-    const auto more = parse<int>(given.substr(5));
-    const int sign = given[4] == '+' ? 1 : -1;
-    if (more && *more >= 0 && *more <= kMaxDepth) {
-      return std::clamp(automatic_depth(triangles) + sign * *more, 1, kMaxDepth);
-    }
-  } else if (const auto depth = parse<int>(given); depth && *depth >= 1 && *depth <= kMaxDepth) {
-    return *depth;
-  }
-  return Error{ErrorClass::usage, "--depth " + text,
-               fmt::format("not auto, auto+N, auto-N or a number of inner nodes from 1 to {}", kMaxDepth)};
+Result<int> parse_depth(const std::string& text) {
+  const auto depth = parse<int>(text);
+  if (depth && *depth >= 1 && *depth <= kMaxDepth) return *depth;
+  return Error{ErrorClass::usage, "--depth " + text, fmt::format("not a number of inner nodes, 1 to {}", kMaxDepth)};
 }
 
 }  // namespace
 
-Result<std::vector<SweepPoint>> sweep_points(const SweepLists& lists, size_t triangles) {
+Result<std::vector<SweepPoint>> sweep_points(const SweepLists& lists) {
   std::vector<SweepPoint> points;
   for (const std::string& costs_text : lists.costs) {
     auto costs = parse_costs(costs_text);
@@ -70,10 +58,15 @@ Result<std::vector<SweepPoint>> sweep_points(const SweepLists& lists, size_t tri
       auto bonus = parse_bonus(bonus_text);
       if (!bonus) return bonus.error();
       costs->empty_bonus = *bonus;
-      for (const std::string& depth_text : lists.depths) {
-        auto depth = parse_depth(depth_text, triangles);
-        if (!depth) return depth.error();
-        points.push_back({costs_text, bonus_text, depth_text, {*costs, *depth}});
+      for (const std::string& price_text : lists.prices) {
+        auto price = parse_price(price_text);
+        if (!price) return price.error();
+        costs->byte_price = *price;
+        for (const std::string& depth_text : lists.depths) {
+          auto depth = parse_depth(depth_text);
+          if (!depth) return depth.error();
+          points.push_back({costs_text, bonus_text, price_text, depth_text, {*costs, *depth}});
+        }
       }
     }
   }

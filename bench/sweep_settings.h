@@ -1,4 +1,4 @@
-// The settings a sweep goes through: the product of three lists, as a command line gives them.
+// The settings a sweep goes through: the product of four lists, as a command line gives them.
 #pragma once
 
 #include <string>
@@ -11,16 +11,17 @@ namespace kd::bench {
 
 struct SweepLists {
   std::vector<std::string> costs{"1:1.5", "1:1", "1.5:1", "2:1", "3:1", "15:20"};  // traversal:intersection
-  std::vector<std::string> bonuses{"0.05", "0.15", "0.3"};
-  std::vector<std::string> depths{"auto-4", "auto", "auto+4"};  // or a number
+  std::vector<std::string> bonuses{"0.08", "0.2"};
+  std::vector<std::string> prices{"0", "0.05", "0.1", "0.2", "0.4"};  // of a byte a triangle
+  std::vector<std::string> depths{"64"};                              // inner nodes
 };
 
 struct SweepPoint {
-  std::string costs, bonus, depth;  // as given
+  std::string costs, bonus, price, depth;  // as given
   build::BuildSettings settings;
 };
 
-/// Every combination for a mesh of so many triangles, depths fastest. ErrorClass::usage for an entry that is none.
-Result<std::vector<SweepPoint>> sweep_points(const SweepLists& lists, size_t triangles);
+/// Every combination, depths fastest. ErrorClass::usage for an entry that is none.
+Result<std::vector<SweepPoint>> sweep_points(const SweepLists& lists);
 
 }  // namespace kd::bench

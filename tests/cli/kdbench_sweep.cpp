@@ -45,32 +45,34 @@ Rows sweep(const Terminal& t, const Arguments& lists) {
 TEST_SUITE("kdbench sweep") {
   TEST_CASE("a row for every combination, depths fastest") {
     const Terminal t;
-    const Rows rows = sweep(t, {"--costs", "1:1.5,15:20", "--bonus", "0.1,0.2", "--depth", "6,auto"});
+    const Rows rows = sweep(t, {"--costs", "1:1.5,15:20", "--bonus", "0.1,0.2", "--price", "0.1", "--depth", "6,30"});
     REQUIRE(rows.size() == 1 + 8);
     CHECK(rows[0][0] == "costs");
-    CHECK(std::vector(rows[1].begin(), rows[1].begin() + 3) == std::vector<std::string>{"1:1.5", "0.1", "6"});
-    CHECK(std::vector(rows[2].begin(), rows[2].begin() + 3) == std::vector<std::string>{"1:1.5", "0.1", "auto"});
-    CHECK(std::vector(rows[8].begin(), rows[8].begin() + 3) == std::vector<std::string>{"15:20", "0.2", "auto"});
-    CHECK(rows[1][6] == "6");
-    CHECK(std::stod(rows[1][3]) > std::stod(rows[2][3]));  // a depth of 6 costs
+    CHECK(std::vector(rows[1].begin(), rows[1].begin() + 4) == std::vector<std::string>{"1:1.5", "0.1", "0.1", "6"});
+    CHECK(std::vector(rows[2].begin(), rows[2].begin() + 4) == std::vector<std::string>{"1:1.5", "0.1", "0.1", "30"});
+    CHECK(std::vector(rows[8].begin(), rows[8].begin() + 4) == std::vector<std::string>{"15:20", "0.2", "0.1", "30"});
+    CHECK(rows[1][7] == "6");
+    CHECK(std::stod(rows[1][4]) > std::stod(rows[2][4]));  // a depth of 6 costs
   }
 
   TEST_CASE("the figures of a tree are those kdbuild gives") {
     const Terminal t;
-    const Rows rows = sweep(t, {"--costs", "1:1.5", "--bonus", "0.15", "--depth", "auto"});
+    const Rows rows = sweep(t, {"--costs", "1:1.5", "--bonus", SAHB, "--price", SAHP});
     const auto stats = t.report("kdbuild", {"build", data_file("icosphere.ply"), "-o", "s.nkd", "--stats", "-"});
     REQUIRE(rows.size() == 2);
-    CHECK(std::stod(rows[1][3]) == doctest::Approx(stats["tree"]["sah_cost"].get<double>()).epsilon(1e-3));
-    CHECK(std::stod(rows[1][4]) == doctest::Approx(stats["tree"]["references"].get<double>() / 1280).epsilon(1e-2));
-    CHECK(std::stod(rows[1][7]) == doctest::Approx(stats["bytes"]["per_triangle"].get<double>()).epsilon(1e-2));
+    CHECK(std::stod(rows[1][4]) == doctest::Approx(stats["tree"]["sah_cost"].get<double>()).epsilon(1e-3));
+    CHECK(std::stod(rows[1][5]) == doctest::Approx(stats["tree"]["references"].get<double>() / 1280).epsilon(1e-2));
+    CHECK(std::stod(rows[1][8]) == doctest::Approx(stats["bytes"]["per_triangle"].get<double>()).epsilon(1e-2));
   }
 
-  TEST_CASE("auto+0 is the builder's own depth limit") {
+  TEST_CASE("a dearer byte buys a smaller object for more SAH cost") {
     const Terminal t;
-    const Rows rows = sweep(t, {"--costs", "1:8", "--bonus", "0.05", "--depth", "auto,auto+0,auto+1"});
+    const Rows rows = sweep(t, {"--costs", "1:1.5", "--bonus", "0.08", "--price", "0,0.1,1"});
     REQUIRE(rows.size() == 4);
-    for (size_t column = 3; column < 9; ++column) CHECK(rows[1][column] == rows[2][column]);
-    CHECK(rows[2][6] != rows[3][6]);  // the limit counts: one more changes the tree
+    for (size_t i = 1; i + 1 < rows.size(); ++i) {
+      CHECK(std::stod(rows[i][8]) > std::stod(rows[i + 1][8]));
+      CHECK(std::stod(rows[i][4]) < std::stod(rows[i + 1][4]));
+    }
   }
 
   TEST_CASE("errors") {
@@ -86,7 +88,8 @@ TEST_SUITE("kdbench sweep") {
       fails({"--costs", costs}, ErrorClass::usage, {"--costs", costs});
     }
     for (const char* bonus : {"-0.1", "1", "x", "nan"}) fails({"--bonus", bonus}, ErrorClass::usage, {"--bonus"});
-    for (const char* depth : {"0", "65", "auto*2", "auto+", "auto+-1", "auto+65", "deep"}) {
+    for (const char* price : {"-0.1", "x", "nan"}) fails({"--price", price}, ErrorClass::usage, {"--price"});
+    for (const char* depth : {"0", "65", "deep"}) {
       fails({"--depth", depth}, ErrorClass::usage, {"--depth", depth});
     }
     fails({"--size", "0x3"}, ErrorClass::usage, {"--size"});
