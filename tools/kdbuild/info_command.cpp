@@ -1,11 +1,13 @@
 // kdbuild info: what an object holds.
 #include <memory>
+#include <optional>
 
 #include <fmt/format.h>
 
 #include "common/console.h"
 #include "common/report.h"
 #include "kdbuild/commands.h"
+#include "kdbuild/explain_report.h"
 #include "nkd/object_file.h"
 #include "sys/hash.h"
 
@@ -16,6 +18,8 @@ namespace {
 struct Options {
   std::string file;
   std::string format = "text";
+  std::string plot;
+  bool explain = false;
 };
 
 Json info_json(const nkd::ObjectFile& file) {
@@ -83,12 +87,22 @@ void print_info(const nkd::ObjectFile& file) {
 }
 
 int run(const Options& options) {
+  if (auto usable = check_outputs({options.plot}, {options.file}); !usable) return fail(kKdbuild, usable.error());
   auto file = nkd::ObjectFile::open(options.file);
   if (!file) return fail(kKdbuild, file.error());
+  std::optional<ObjectExplanation> explanation;
+  if (options.explain || !options.plot.empty()) explanation = explain_object(*file);
+  if (!options.plot.empty()) {
+    if (auto written = write_explanation_svg(options.plot, *explanation); !written)
+      return fail(kKdbuild, written.error());
+  }
   if (options.format == "json") {
-    if (auto written = write_report("-", info_json(*file)); !written) return fail(kKdbuild, written.error());
+    Json info = info_json(*file);
+    if (options.explain) info["explanation"] = explanation_json(*explanation);
+    if (auto written = write_report("-", info); !written) return fail(kKdbuild, written.error());
   } else {
     print_info(*file);
+    if (options.explain) print_explanation(*explanation);
   }
   return 0;
 }
@@ -102,6 +116,8 @@ Command info_command(CLI::App& app) {
   c->add_option("--format", options->format, "text or json")
       ->check(CLI::IsMember({"text", "json"}))
       ->capture_default_str();
+  c->add_flag("--explain", options->explain, "Tell why the tree costs what it costs: by depth, leaf and triangle");
+  c->add_option("--plot", options->plot, "Draw that to this file, as SVG")->check(file_name());
   return {c, [options] { return run(*options); }};
 }
 
