@@ -8,6 +8,7 @@
 #include "common/report.h"
 #include "kdbuild/commands.h"
 #include "kdbuild/compile.h"
+#include "kdbuild/explain_report.h"
 #include "mesh/read_mesh.h"
 #include "sys/parallel.h"
 
@@ -16,10 +17,11 @@ namespace kd::tools {
 namespace {
 
 struct Options {
-  std::string input, output, stats;
+  std::string input, output, stats, plot;
   CompileSettings settings;
   unsigned threads = 0;
   bool quiet = false;
+  bool explain = false;
 };
 
 Json fault_json(const mesh::FaceFault& fault) {
@@ -101,7 +103,9 @@ void print_report(const Options& options, const CompileReport& r) {
 int run(const Options& options) {
   const ThreadLimit limit(options.threads);
   catch_interrupts();
-  if (auto usable = check_outputs({options.output, options.stats}, {options.input}); !usable) {
+  if (options.explain && options.stats == "-")
+    return fail(kKdbuild, {ErrorClass::usage, "--explain", "stdout has the report of --stats -: give that a file"});
+  if (auto usable = check_outputs({options.output, options.stats, options.plot}, {options.input}); !usable) {
     return fail(kKdbuild, usable.error());
   }
   const std::string name = std::filesystem::path(options.input).filename().string();
@@ -116,6 +120,10 @@ int run(const Options& options) {
   if (!options.stats.empty()) {
     if (auto written = write_report(options.stats, report_json(options, *report)); !written)
       return fail(kKdbuild, written.error());
+  }
+  if (options.explain || !options.plot.empty()) {
+    if (auto explained = explain_file(options.output, options.explain, options.plot); !explained)
+      return fail(kKdbuild, explained.error());
   }
   return 0;
 }
@@ -133,6 +141,8 @@ Command build_command(CLI::App& app) {
   c->add_flag("--ambient-from-diffuse", options->settings.ambient_from_diffuse,
               "Take a material's ambient colour from its diffuse one, whatever the MTL's Ka says");
   c->add_option("--stats", options->stats, "Write a JSON report to this file, or to stdout (-)");
+  c->add_flag("--explain", options->explain, "Tell why the tree costs what it costs: by depth, leaf and triangle");
+  c->add_option("--plot", options->plot, "Draw that to this file, as SVG")->check(file_name());
   c->add_option("--threads", options->threads, "Threads to use; 0: all cores")
       ->check(whole_number(0, 4096))
       ->capture_default_str();
