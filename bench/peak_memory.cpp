@@ -28,8 +28,9 @@ uint64_t status_bytes(const std::string& name) {
 }
 
 /// What the child has to say, as lines: a status (0: done), then either the two figures or where and what went wrong.
+/// Throws nothing: the child must not unwind what is its parent's.
 std::string measure(const std::string& input, const std::string& output, const tools::CompileSettings& settings,
-                    unsigned threads) {
+                    unsigned threads) noexcept {
   const uint64_t before = status_bytes("VmRSS");
   try {
     const ThreadLimit limit(threads);
