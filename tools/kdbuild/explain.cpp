@@ -60,7 +60,6 @@ void count_triangles(std::vector<uint32_t> times, Explanation& out) {
 
 Explanation explain(std::span<const Node> nodes, std::span<const uint32_t> references, size_t triangles,
                     const Lattice& lattice) {
-  constexpr double kIntersection = 1.5;
   Explanation out;
   out.triangles = triangles;
   std::vector<uint32_t> times(triangles);
@@ -77,7 +76,7 @@ Explanation explain(std::span<const Node> nodes, std::span<const uint32_t> refer
     }
     const uint32_t count = reference_count(node);
     ++level.leaves;
-    level.intersection_cost += kIntersection * count * visits;
+    level.intersection_cost += kIntersectionCost * count * visits;
     out.references += count;
     out.leaf_visits += visits;
     Bin& bin = bin_of(count, out.leaf_sizes);

@@ -1,7 +1,7 @@
 // Why a tree costs what it costs: where its SAH cost lies, what its leaves hold, how often triangles repeat.
 //
 // A ray that meets the mesh's box is expected to meet a cell with probability SA(cell)/SA(root): "visits" are sums of
-// these. Costs are those of tree_statistics: 1 a visit of an inner node, 1.5 a triangle of a visited leaf.
+// these. Costs are those of tree_statistics.
 #pragma once
 
 #include <cstdint>
@@ -13,6 +13,9 @@
 #include "core/node.h"
 
 namespace kd::tools {
+
+/// Of a triangle of a visited leaf, where a visit of an inner node costs 1.
+constexpr double kIntersectionCost = 1.5;
 
 /// What lies at one depth, in inner nodes from the root.
 struct Level {

@@ -97,7 +97,7 @@ ObjectExplanation explain_object(const nkd::ObjectFile& file) {
            {"references", g.references.size_bytes()},
            {"triangles", g.triangles.size_bytes()},
            {"vertices", g.vertices.size_bytes()},
-           {"header, attributes", file.size() - geometry}}};
+           {"rest", file.size() - geometry}}};
 }
 
 void print_explanation(const ObjectExplanation& e) {
@@ -107,7 +107,7 @@ void print_explanation(const ObjectExplanation& e) {
   fmt::print("  traversal    {:>9.3f}  {:>5.1f} %  a ray that meets the box passes {:.1f} inner nodes\n",
              t.traversal_cost, percent(t.traversal_cost, t.sah_cost()), t.traversal_cost);
   fmt::print("  intersection {:>9.3f}  {:>5.1f} %  and {:.1f} leaves with {:.1f} triangles\n", t.intersection_cost,
-             percent(t.intersection_cost, t.sah_cost()), t.leaf_visits, t.intersection_cost / 1.5);
+             percent(t.intersection_cost, t.sah_cost()), t.leaf_visits, t.intersection_cost / kIntersectionCost);
   print_levels(t);
   print_leaf_sizes(t);
   fmt::print("  empty: {} of {} leaves, {:.1f} % of the box's volume, {:.1f} % of the visits to leaves\n",

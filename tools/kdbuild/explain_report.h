@@ -19,7 +19,7 @@ struct SectionBytes {
 struct ObjectExplanation {
   std::string name;  // the file's, without folders
   Explanation tree;
-  std::vector<SectionBytes> sections;  // all of the file
+  std::vector<SectionBytes> sections;  // all of the file; the rest is its header and its attributes
 
   double bytes_per_triangle() const;
 };
