@@ -2,7 +2,6 @@
 // chooses splits, and stops.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -14,6 +13,8 @@ namespace kd::build {
 
 constexpr double kReferenceBytes = sizeof(uint32_t);
 constexpr double kNodeBytes = sizeof(Node);
+
+constexpr double leaf_bytes(uint32_t n) { return n == 0 ? 0 : kNodeBytes + kReferenceBytes * n; }
 
 /// How many triangle tests' worth a ray is expected to do in a cell of n triangles. A greedy builder that takes it for
 /// n overrates large cells, which will be split further: there each doubling multiplies it only by kDoubling. Both
@@ -47,30 +48,31 @@ class ExpectedTests {
   }
 };
 
-/// The prices in one cell. Costs are per ray that meets the cell, so a byte costs more the fewer rays do.
+/// The prices in one cell. Costs are per ray that meets the cell, so a byte costs more the fewer rays do; and
+/// nothing where a leaf would be fat. Else parts of the mesh that few rays meet, but perhaps all rays of one picture,
+/// would be left in a few leaves of hundreds of triangles, which cost little memory but hold up a whole image.
 struct CellCosts {
+  static constexpr uint32_t kFullLeaf = 16;  // triangles
+
   double traversal, intersection;
   double kept;  // of a split's cost where one side is empty
   double byte;
 
-  CellCosts(const Context& context, const Box3u& cell)
+  CellCosts(const Context& context, const Box3u& cell, uint32_t count)
       : traversal(context.costs.traversal),
         intersection(context.costs.intersection),
         kept(1 - context.costs.empty_bonus),
         byte(0) {
-    // Never more than makes a reference cost a quarter of a triangle test: else parts of the mesh that few rays meet,
-    // but perhaps all rays of one picture, would be left in a few large leaves.
-    const double dearest = intersection / (4 * kReferenceBytes);
-    if (context.area_price > 0) byte = std::min(context.area_price / context.half_area_of(cell), dearest);
+    if (context.area_price > 0 && count <= kFullLeaf) byte = context.area_price / context.half_area_of(cell);
   }
 
-  double leaf(uint32_t n) const { return n == 0 ? 0 : intersection * n + byte * (kNodeBytes + kReferenceBytes * n); }
+  double leaf(uint32_t n) const { return intersection * n + byte * leaf_bytes(n); }
   /// A split into n_below and n_above triangles, on which rays do `tests` tests on average.
   double split(double tests, uint32_t n_below, uint32_t n_above) const {
-    const bool cuts_off_nothing = n_below == 0 || n_above == 0;
+    const bool one_empty = n_below == 0 || n_above == 0;
     const double sah = traversal + intersection * tests;
-    return (cuts_off_nothing ? kept * sah : sah) +
-           byte * (kReferenceBytes * (double{1} * n_below + n_above) + kNodeBytes * (cuts_off_nothing ? 2 : 3));
+    return (one_empty ? kept * sah : sah) +
+           byte * (kReferenceBytes * (double{1} * n_below + n_above) + kNodeBytes * (one_empty ? 2 : 3));
   }
   /// Whether no split of n triangles can be cheaper than a leaf, wherever they lie.
   bool hopeless(uint32_t n) const { return kept * traversal + byte * kNodeBytes >= intersection * n; }

@@ -74,8 +74,8 @@ struct LaneCosts {
     const Floats sah =
         traversal + intersection * (p_below * expected_tests(n_below) + p_above * expected_tests(n_above));
     const Floats bytes = reference_bytes * (n_below + n_above) + 2 * node_bytes;
-    const Ints cuts_off_nothing = (below == 0) | (above == 0);
-    return cuts_off_nothing ? kept * sah + bytes : sah + (bytes + node_bytes);
+    const Ints one_empty = (below == 0) | (above == 0);
+    return one_empty ? kept * sah + bytes : sah + (bytes + node_bytes);
   }
 };
 
@@ -142,10 +142,15 @@ class SmallCellBuilder {
   SmallCellBuilder(const Context& context, BoxStack& stack, Subtree& out)
       : context_(context), stack_(stack), out_(out) {}
 
-  double build(const Box3u& cell, int depth, size_t first, uint32_t slot);
+  /// What a subtree came to.
+  struct Outcome {
+    double cost = 0;   // expected, to a ray that meets the cell
+    double bytes = 0;  // of nodes and references
+  };
+  Outcome build(const Box3u& cell, int depth, size_t first, uint32_t slot);
 
  private:
-  double leaf(const CellCosts& costs, size_t first, size_t n, uint32_t slot);
+  void make_leaf_of(size_t first, size_t n, uint32_t slot);
   size_t push_children(const Box3u& cell, const Split& split, bool boxes_matter, size_t first, size_t n);
   void push_copy(size_t from);
 
@@ -154,12 +159,11 @@ class SmallCellBuilder {
   Subtree& out_;
 };
 
-double SmallCellBuilder::leaf(const CellCosts& costs, size_t first, size_t n, uint32_t slot) {
+void SmallCellBuilder::make_leaf_of(size_t first, size_t n, uint32_t slot) {
   const auto count = static_cast<uint32_t>(n);
   out_.nodes[slot] = make_leaf(static_cast<uint32_t>(out_.references.size()), count);
   const auto begin = stack_.triangles.begin() + static_cast<std::ptrdiff_t>(first);
   out_.references.insert(out_.references.end(), begin, begin + count);
-  return costs.leaf(count);
 }
 
 void SmallCellBuilder::push_copy(size_t from) {
@@ -205,37 +209,40 @@ size_t SmallCellBuilder::push_children(const Box3u& cell, const Split& split, bo
   return lower_first;
 }
 
-double SmallCellBuilder::build(const Box3u& cell, int depth, size_t first, uint32_t slot) {
+SmallCellBuilder::Outcome SmallCellBuilder::build(const Box3u& cell, int depth, size_t first, uint32_t slot) {
   const size_t n = stack_.size - first;
   const auto count = static_cast<uint32_t>(n);
-  const CellCosts costs(context_, cell);
-  const double leaf_cost = costs.leaf(count);
+  const CellCosts costs(context_, cell, count);
   const auto close = [&] {
-    const double cost = leaf(costs, first, n, slot);
+    make_leaf_of(first, n, slot);
     stack_.size = first;
-    return cost;
+    return Outcome{costs.intersection * count, leaf_bytes(count)};
   };
   if (costs.hopeless(count) || depth >= context_.max_depth) return close();
   const Split split = choose_split(context_, costs, cell, stack_, first, n);
-  if (split.cost >= leaf_cost || (count > ExpectedTests::kLinear && !pays(context_, cell, count, split)))
+  if (split.cost >= costs.leaf(count) || (count > ExpectedTests::kLinear && !pays(context_, cell, count, split)))
     return close();
 
   Box3u below = cell, above = cell;
   below.hi.set(split.axis, split.plane);
   above.lo.set(split.axis, split.plane);
-  const bool boxes_matter =
-      !CellCosts(context_, below).hopeless(split.below) || !CellCosts(context_, above).hopeless(split.above);
+  const bool boxes_matter = !CellCosts(context_, below, split.below).hopeless(split.below) ||
+                            !CellCosts(context_, above, split.above).hopeless(split.above);
   const size_t lower_first = push_children(cell, split, boxes_matter, first, n);
 
   const size_t nodes_before = out_.nodes.size(), references_before = out_.references.size();
   const uint32_t child = out_.open_inner(slot, split);
   const PlaneProbability probability(cell, split.axis, context_.step);
-  double cost = costs.traversal + costs.byte * kNodeBytes;
-  if (split.below > 0) cost += probability.below(split.plane) * build(below, depth + 1, lower_first, child);
-  if (split.above > 0) cost += probability.above(split.plane) * build(above, depth + 1, first + n, child + 1);
-  if (cost < leaf_cost) {
+  Outcome outcome{costs.traversal, kNodeBytes};
+  const auto add = [&](const Outcome& part, double share) {
+    outcome.cost += share * part.cost;
+    outcome.bytes += part.bytes;
+  };
+  if (split.below > 0) add(build(below, depth + 1, lower_first, child), probability.below(split.plane));
+  if (split.above > 0) add(build(above, depth + 1, first + n, child + 1), probability.above(split.plane));
+  if (outcome.cost + costs.byte * outcome.bytes < costs.leaf(count)) {
     stack_.size = first;
-    return cost;
+    return outcome;
   }
   out_.nodes.resize(nodes_before);
   out_.references.resize(references_before);
@@ -263,9 +270,9 @@ void BoxStack::push(uint32_t triangle, const Box3u& box) {
   triangles[size++] = triangle;
 }
 
-double build_small_cell(const Context& context, const Box3u& cell, int depth, BoxStack& stack, size_t first,
-                        uint32_t slot, Subtree& out) {
-  return SmallCellBuilder(context, stack, out).build(cell, depth, first, slot);
+void build_small_cell(const Context& context, const Box3u& cell, int depth, BoxStack& stack, size_t first,
+                      uint32_t slot, Subtree& out) {
+  SmallCellBuilder(context, stack, out).build(cell, depth, first, slot);
 }
 
 }  // namespace kd::build

@@ -34,8 +34,7 @@ struct BoxStack {
 ///
 /// Greedy splitting is followed by a look back: a subtree that turns out no cheaper than one leaf becomes one. It lets
 /// the bonus for empty space tempt the search without paying for it where nothing came of it.
-/// Returns what the subtree is expected to cost a ray that meets the cell, memory included.
-double build_small_cell(const Context& context, const Box3u& cell, int depth, BoxStack& stack, size_t first,
-                        uint32_t slot, Subtree& out);
+void build_small_cell(const Context& context, const Box3u& cell, int depth, BoxStack& stack, size_t first,
+                      uint32_t slot, Subtree& out);
 
 }  // namespace kd::build

@@ -7,7 +7,7 @@ Split best_split(const Context& context, std::span<const Event> events, int axis
   const uint32_t lo = cell.lo[axis], hi = cell.hi[axis];
   if (lo == hi) return best;
   const PlaneProbability probability(cell, axis, context.step);
-  const CellCosts costs(context, cell);
+  const CellCosts costs(context, cell, count);
 
   const auto consider = [&](uint32_t plane, uint32_t below, uint32_t above, bool flat_below) {
     const double tests =
@@ -43,7 +43,7 @@ Split best_split(const Context& context, std::span<const Event> events, int axis
 bool pays(const Context& context, const Box3u& cell, uint32_t count, const Split& split) {
   if (!split.found()) return false;
   const PlaneProbability probability(cell, split.axis, context.step);
-  const CellCosts costs(context, cell);
+  const CellCosts costs(context, cell, count);
   const double tests = probability.below(split.plane) * split.below + probability.above(split.plane) * split.above;
   return costs.split(tests, split.below, split.above) < costs.leaf(count);
 }

@@ -12,6 +12,9 @@
 // and otherwise the child is visited. The margins are put in when a bound is stored, once a level, not at each
 // comparison. They also cover the rounding of a hit's distance, so "nearest hit before the entry" is never said too
 // early.
+//
+// Empty children are passed over. A cell that comes off the stack after one begins, for all that is known, where the
+// cell before it ended: too early, never too late.
 #pragma once
 
 #include "core/arithmetic.h"
@@ -74,6 +77,12 @@ KD_HD inline uint32_t traverse(const ObjectView& object, const LatticeRay& ray, 
         index = near;
       } else if (s < s_entry) {
         index = far;
+      } else if (far == kEmptyLeaf) {
+        index = near;
+        s_exit = min_of(s_exit, s * kExitMargin);
+      } else if (near == kEmptyLeaf) {
+        index = far;
+        s_entry = s * kEntryMargin;
       } else {
         stack[depth++] = {far, s_exit};
         index = near;
