@@ -24,9 +24,10 @@ Frame rotation(const TransformPlacement& placement) {
   return {{0, 0, 0}, turned({1, 0, 0}), turned({0, 1, 0}), turned({0, 0, 1})};
 }
 
-/// The placement as a frame of the space it is written in: the unit cube for a box, model space for a transform.
+/// The placement as a frame of the space it is written in: the unit cube for a box, else model space.
 Frame placement_frame(const Placement& placement) {
   if (const auto* box = std::get_if<BoxPlacement>(&placement)) return box->box;
+  if (const auto* frame = std::get_if<FramePlacement>(&placement)) return frame->frame;
   const auto& t = std::get<TransformPlacement>(placement);
   const Frame turn = rotation(t);
   return {t.translate, turn.x_axis * t.scale.x, turn.y_axis * t.scale.y, turn.z_axis * t.scale.z};

@@ -34,6 +34,10 @@ bool fits_float(double v) { return v >= 0 && v <= double{std::numeric_limits<flo
 
 Vec3d to_vec3d(const scene_fb::Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
+Frame to_frame(const scene_fb::Frame& f) {
+  return {to_vec3d(*f.point()), to_vec3d(*f.x_axis()), to_vec3d(*f.y_axis()), to_vec3d(*f.z_axis())};
+}
+
 /// Turns the parsed tables into a Scene and checks what the schema cannot say. A failed check records an error, the
 /// first one only, and reading goes on with whatever is there; `read` then returns the error.
 class Reader {
@@ -185,16 +189,18 @@ Part Reader::read_part(const scene_fb::Part& source, const std::string& at) {
 }
 
 Placement Reader::read_placement(const scene_fb::Part& source, const std::string& at) {
-  if (!source.box()) return read_transform(source, at);
+  if (!source.box() && !source.frame()) return read_transform(source, at);
+  const char* given = source.box() ? "box" : "frame";
   const auto exclude = [&](const void* field, const char* name) {
-    if (field) fail(fmt::format("{}.{}", at, name), fmt::format("'{}' does not go with 'box': keep one of them", name));
+    if (!field) return;
+    fail(fmt::format("{}.{}", at, name), fmt::format("'{}' does not go with '{}': keep one of them", name, given));
   };
   exclude(source.translate(), "translate");
   exclude(source.rotate(), "rotate");
   exclude(source.scale(), "scale");
-  const scene_fb::Box& box = *source.box();
-  return BoxPlacement{
-      {to_vec3d(*box.point()), to_vec3d(*box.x_axis()), to_vec3d(*box.y_axis()), to_vec3d(*box.z_axis())}};
+  if (!source.box()) return FramePlacement{to_frame(*source.frame())};
+  exclude(source.frame(), "frame");
+  return BoxPlacement{to_frame(*source.box())};
 }
 
 TransformPlacement Reader::read_transform(const scene_fb::Part& source, const std::string& at) {

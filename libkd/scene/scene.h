@@ -58,7 +58,12 @@ struct TransformPlacement {
   Vec3d scale{1, 1, 1};  // no component is zero; a negative one mirrors
 };
 
-using Placement = std::variant<BoxPlacement, TransformPlacement>;
+/// The object's model space to scene space, by any invertible affine map.
+struct FramePlacement {
+  Frame frame;
+};
+
+using Placement = std::variant<BoxPlacement, TransformPlacement, FramePlacement>;
 
 struct Part {
   std::string name;     // may be empty

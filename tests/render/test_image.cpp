@@ -145,7 +145,7 @@ TEST_CASE("image: no surface shadows itself") {
   }
 }
 
-TEST_CASE("image: a box placement and the transform that does the same") {
+TEST_CASE("image: a box or frame placement and the transform that does the same") {
   const Stage stage;
   Contents c = unit_cube();
   c.summary.lattice = {{-1, -2, -4}, {2, 4, 8}, 21};
@@ -169,6 +169,9 @@ TEST_CASE("image: a box placement and the transform that does the same") {
     worst = std::max(worst, std::fabs(double{a.frame.film.colour[i]} - b.frame.film.colour[i]));
   }
   CHECK(worst < kTolerance);
+  s.characters[0].parts[0].placement =
+      scene::FramePlacement{{{0.5, 0.5, 0}, {0, 0.5, 0}, {-0.25, 0, 0}, {0, 0, 0.125}}};
+  CHECK(same_film(Rendered(s, all_aovs()).frame.film, a.frame.film));
 }
 
 TEST_CASE("image: a mirrored cube is as bright as the cube") {

@@ -128,6 +128,20 @@ TEST_CASE("instances: coincident ones, of which the first named wins") {
   CHECK(differences(world, 2000, 0, hits) == 0);
 }
 
+TEST_CASE("instances: a frame takes model space, sheared and mirrored") {
+  const Lattice lattice{{-1, 2, 5}, {4, 8, 2}, 10};
+  const Frame frame{{10, 20, 30}, {-2, 0, 0}, {1, 3, 0}, {0, 0.5, 1}};
+  const auto instances =
+      scene::place_instances(scene_of({"object"}, {part(0, scene::FramePlacement{frame})}), std::array{lattice});
+  REQUIRE(instances);
+  const scene::Instance& instance = instances->at(0);
+  for (const Vec3u q : {Vec3u{0, 0, 0}, Vec3u{1023, 0, 0}, Vec3u{17, 1023, 400}}) {
+    const Vec3d expected = frame.apply_point(lattice.to_model(q));
+    CHECK(length(instance.lattice_to_scene.apply_point(vec_cast<double>(q)) - expected) < 1e-12);
+    CHECK(length(instance.scene_to_lattice.apply_point(expected) - vec_cast<double>(q)) < 1e-9);
+  }
+}
+
 TEST_CASE("instances: one, and none") {
   const World one(random_parts(1, 5, 3));
   CHECK(one.hierarchy.size() == 1);

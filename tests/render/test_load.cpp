@@ -111,6 +111,7 @@ TEST_CASE("load: a placement that cannot be says on which line") {
        {scene::Placement{scene::BoxPlacement{{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 0, 1}}}},
         scene::Placement{scene::BoxPlacement{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 1e-12}}}},
         scene::Placement{scene::BoxPlacement{{{0, 0, 0}, {0, 0, 0}, {0, 1, 0}, {0, 0, 1}}}},
+        scene::Placement{scene::FramePlacement{{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 0, 1}}}},
         scene::Placement{moved({huge, 0, 0}, {huge, 1, 1})}, scene::Placement{moved({HUGE_VAL, 0, 0})}}) {
     auto s = scene_of({cube}, {part(0, moved({})), part(0, placement)});
     s.characters[0].parts[1].line = 42;

@@ -34,7 +34,8 @@ const std::string kFull = R"({
        "scale": [1, 1, -1]},
       {"object": "altär", "box": {"point": [1, 2, 3], "x_axis": [4, 0, 0], "y_axis": [0, 5, 0], "z_axis": [0, 0, 6]}}]},
     {"parts": [
-      {"object": "bay", "material": {"diffuse": [1, 0, 0], "specular": [0.5, 0.5, 0.5], "shininess": 40}}]}
+      {"object": "bay", "material": {"diffuse": [1, 0, 0], "specular": [0.5, 0.5, 0.5], "shininess": 40}},
+      {"object": "bay", "frame": {"point": [1, 2, 3], "x_axis": [0, 1, 0], "y_axis": [1, 1, 0], "z_axis": [0, 0, 2]}}]}
   ]
 })";
 
@@ -112,6 +113,8 @@ TEST_CASE("scene: every field is read") {
   CHECK(painted.line == 16);
   REQUIRE(painted.material);
   CHECK(*painted.material == Material{Material{}.ambient, {1, 0, 0}, {0.5f, 0.5f, 0.5f}, 40});
+  const Frame frame = std::get<FramePlacement>(scene->characters[1].parts.at(1).placement).frame;
+  CHECK(frame.apply_point({1, 2, 3}) == Vec3d{3, 5, 9});
 }
 
 TEST_CASE("scene: a byte order mark and any white space are accepted") {
@@ -200,6 +203,12 @@ const BadScene kBadScenes[] = {
     {"[0, 1, 0], \"degrees\"", "[0, 0, 0], \"degrees\"", "12:90", "'axis' must not be zero"},
     {", \"degrees\": 90", "", "12:81", "lacks 'degrees'"},
     {"\"box\": {", "\"scale\": [1, 1, 1], \"box\": {", "14:37", "'scale' does not go with 'box'"},
+    {"\"frame\": {", "\"translate\": [1, 1, 1], \"frame\": {", "17:38", "'translate' does not go with 'frame'"},
+    {"\"box\": {",
+     "\"frame\": {\"point\": [0, 0, 0], \"x_axis\": [1, 0, 0], \"y_axis\": [0, 1, 0], \"z_axis\": [0, 0, 1]}, \"box\": "
+     "{",
+     "14:37", "'frame' does not go with 'box'"},
+    {", \"z_axis\": [0, 0, 2]", "", "17:34", "'frame' lacks 'z_axis'"},
     {"\"shininess\": 40", "\"shininess\": -1", "16:102", "'shininess' must be from 0"},
     {"\"diffuse\": [1, 0, 0]", "\"diffuse\": [1, -1, 0]", "16:49", "from 0 to"},
 };
