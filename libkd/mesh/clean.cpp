@@ -114,6 +114,7 @@ CleanReport clean(Mesh& mesh) {
   keep_marked(mesh.source_primitives, keep);
   keep_marked(mesh.normal_indices, keep);
   keep_marked(mesh.material_ids, keep);
+  keep_marked(mesh.group_ids, keep);
   return report;
 }
 

@@ -22,6 +22,8 @@ struct Mesh {
   std::vector<Material> materials;                      // empty if the source names none
   std::vector<std::string> material_names;              // one per material
   std::vector<uint16_t> material_ids;                   // per triangle; empty if no materials
+  std::vector<std::string> group_names;                 // empty if the source has no groups
+  std::vector<uint32_t> group_ids;                      // per triangle; empty if no groups
   std::vector<std::string> warnings;                    // what the reader had to replace or leave out, a line each
 };
 

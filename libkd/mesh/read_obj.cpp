@@ -5,11 +5,13 @@
 #include <limits>
 #include <set>
 #include <sstream>
+#include <unordered_map>
 
 #include <fmt/format.h>
 
 #include "mesh/formats.h"
 #include "mesh/mesh_builder.h"
+#include "mesh/obj_lines.h"
 #include "mesh/read_mtl.h"
 #include "mesh/text.h"
 
@@ -73,7 +75,16 @@ uint64_t face_line(std::string_view text, uint64_t count) {
 
 /// What tinyobjloader's callbacks fill.
 struct Reading {
-  explicit Reading(MtlReader reader) : materials(std::move(reader)) {}
+  explicit Reading(MtlReader reader) : materials(std::move(reader)) { enter_group(""); }
+
+  /// Groups and objects of one name are one; those without a name, and what stands before any, are "default".
+  void enter_group(const std::string& name) {
+    std::vector<std::string>& names = builder.mesh.group_names;
+    const auto [entry, fresh] =
+        group_of.try_emplace(name.empty() ? "default" : name, static_cast<uint32_t>(names.size()));
+    if (fresh) names.push_back(entry->first);
+    group = entry->second;
+  }
 
   MeshBuilder builder;
   std::vector<uint32_t> normal_of;  // per vn line: the index in the mesh's normals
@@ -82,6 +93,8 @@ struct Reading {
   int64_t positions = 0;
   int64_t normals = 0;
   int material = -1;
+  uint32_t group = 0;
+  std::unordered_map<std::string, uint32_t> group_of;
   std::set<std::string> undefined;  // names of materials
   bool uses_default = false;
   std::string fault;  // of face `faces`; the rest is not read
@@ -121,7 +134,20 @@ void take_face(void* user, tinyobj::index_t* indices, int count) {
   r.uses_default |= is_default;
   const auto added = r.builder.add_face(r.corners, is_default ? kDefaultMaterial : static_cast<uint16_t>(r.material));
   if (!added) r.fault = added.error().what;
+  r.builder.mesh.group_ids.resize(r.builder.mesh.triangles.size(), r.group);
   ++r.faces;
+}
+
+void take_group(void* user, const char** names, int count) {
+  std::string all;
+  for (int i = 0; i < count; ++i) all += fmt::format("{}{}", i > 0 ? " " : "", names[i]);
+  static_cast<Reading*>(user)->enter_group(all);
+}
+
+void take_object(void* user, const char* name) {
+  std::string_view text = name;
+  while (text.ends_with(' ') || text.ends_with('\t')) text.remove_suffix(1);
+  static_cast<Reading*>(user)->enter_group(std::string(text));
 }
 
 void take_material(void* user, const char* name, int) {
@@ -159,7 +185,8 @@ Result<void> place_materials(Reading& r, const std::string& path) {
 }  // namespace
 
 Result<Mesh> read_obj(Bytes bytes, const std::string& path, const ReadOptions& options) {
-  const std::string_view text = text_of(bytes);
+  std::istringstream in(plain_obj_lines(text_of(bytes)));
+  const std::string_view text = in.view();
   Result<Vertices> vertices = read_vertices(text, path);
   if (!vertices) return vertices.error();
 
@@ -174,7 +201,8 @@ Result<Mesh> read_obj(Bytes bytes, const std::string& path, const ReadOptions& o
   callbacks.normal_cb = [](void* user, Real, Real, Real) { ++static_cast<Reading*>(user)->normals; };
   callbacks.index_cb = take_face;
   callbacks.usemtl_cb = take_material;
-  std::istringstream in{std::string(text)};
+  callbacks.group_cb = take_group;
+  callbacks.object_cb = take_object;
   std::string warning, error;
   const bool parsed = tinyobj::LoadObjWithCallback(in, callbacks, &reading, &reading.materials, &warning, &error);
   if (!reading.fault.empty()) {
@@ -182,6 +210,10 @@ Result<Mesh> read_obj(Bytes bytes, const std::string& path, const ReadOptions& o
   }
   if (!parsed) return Error{ErrorClass::mesh, path, fmt::format("tinyobjloader: {}", error)};
   if (const auto placed = place_materials(reading, path); !placed) return placed.error();
+  if (reading.builder.mesh.group_names.size() == 1) {
+    reading.builder.mesh.group_names.clear();
+    reading.builder.mesh.group_ids.clear();
+  }
   return std::move(reading.builder).finish(path);
 }
 

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "mesh/read_mesh.h"
 #include "support/temp_folder.h"
 
@@ -61,6 +63,36 @@ TEST_CASE("obj: line ends, a missing one at the end, and relative indices") {
   }
 }
 
+TEST_CASE("obj: comments and lines that go on") {
+  for (const std::string end : {"\n", "\r\n", "\r"}) {
+    const std::string corners =
+        "v 0 0 0 # one" + end + "# v 9 9 9" + end + "v 1 0 \\" + end + "0" + end + "v 1 1 0#" + end + "v 0 1 0" + end;
+    for (const std::string& faces :
+         std::vector<std::string>{"f 1 2 3 4", "f 1 2 3 4 # f 1 2", "f 1 2 3 4# \\", "f 1 2 \\" + end + "3 4",
+                                  "f 1 2 \\" + end + "  # between \\" + end + "3 \\" + end + "4",
+                                  "f \\" + end + "1\\" + end + "2\\" + end + "3\\" + end + "4 # end"}) {
+      CAPTURE(faces);
+      const auto mesh = read("# path C:\\" + end + corners + end + "  #" + end + faces);
+      REQUIRE(mesh);
+      CHECK(mesh->positions.size() == 4);
+      CHECK(mesh->triangles == std::vector<std::array<uint32_t, 3>>{{0, 1, 2}, {0, 2, 3}});
+      CHECK(mesh->warnings.empty());
+    }
+  }
+  // A place is the line on which the statement begins, whatever went before.
+  const Error error = error_of(read(kCorners + "f 1 2 \\\n3\n\nf 1 \\\n2 \\\n7\nf 1 2 3\n"));
+  CHECK(mentions(error.where, "a.obj:8"));
+  CHECK(mentions(error_of(read(kCorners + "f 1 2 3\\\n\nv 0 x 0\n")).where, "a.obj:7"));
+  CHECK(error_of(read(kCorners + "f 1 2 3 \\ 4\n")).error_class == ErrorClass::mesh);
+  CHECK(read(kCorners + "f 1 2 3 \\"));
+}
+
+TEST_CASE("obj: names may hold a #") {
+  const auto mesh = read("mtllib m.mtl\n" + kCorners + "usemtl red#1\nf 1 2 3\n", "newmtl red#1\nKd 1 0 0\n");
+  REQUIRE(mesh);
+  CHECK(mesh->material_names == std::vector<std::string>{"red#1"});
+}
+
 TEST_CASE("obj: file order across groups, objects and materials") {
   const auto mesh =
       read("mtllib m.mtl\n" + kCorners +
@@ -97,6 +129,34 @@ TEST_CASE("obj: polygons") {
       }
     }
   }
+  SUBCASE("a concave one in any plane, of many corners, with no overlap") {
+    // A comb: teeth of area 1 above a bar of area 2 * teeth; tilted so that no axis is its normal.
+    const int teeth = 40;
+    std::vector<Vec3d> outline;
+    for (int i = teeth; i-- > 0;) {
+      for (const Vec3d p :
+           {Vec3d{2.0 * i + 2, 1, 0}, Vec3d{2.0 * i + 1, 1, 0}, Vec3d{2.0 * i + 1, 2, 0}, Vec3d{2.0 * i, 2, 0}}) {
+        outline.push_back(p);
+      }
+    }
+    outline.push_back({0, 0, 0});
+    outline.push_back({2.0 * teeth, 0, 0});
+    std::string points, face = "f";
+    for (size_t i = 0; i < outline.size(); ++i) {
+      const Vec3d p = outline[i];
+      points += fmt::format("v {} {} {}\n", p.x, p.y, 0.5 * p.x - 0.25 * p.y);
+      face += fmt::format(" {}", i + 1);
+    }
+    const auto mesh = read(points + face);
+    REQUIRE(mesh);
+    CHECK(mesh->triangles.size() == outline.size() - 2);
+    CHECK(area_xy(*mesh) == doctest::Approx(3 * teeth));
+    // No triangle is turned, so an area that is the polygon's leaves none to overlap.
+    for (const auto& t : mesh->triangles) {
+      const Vec3d a = mesh->positions[t[0]];
+      CHECK(cross(mesh->positions[t[1]] - a, mesh->positions[t[2]] - a).z >= 0);
+    }
+  }
   SUBCASE("one without area, and one that crosses itself, keep all corners") {
     const auto mesh = read(kCorners + "v nan 0 0\nf 1 2 1 2 1\nf 1 3 2 4\nf 1 1 1 1\nf 1 2 5 3 4\n");
     REQUIRE(mesh);
@@ -121,6 +181,12 @@ TEST_CASE("obj: normals have length 1, and useless ones are no normals") {
   CHECK(mesh->normal_indices[0] == std::array<uint32_t, 3>{0, kNoIndex, kNoIndex});
   CHECK(mesh->normal_indices[1] == std::array<uint32_t, 3>{1, kNoIndex, 1});
   CHECK(mesh->normal_indices[2] == std::array<uint32_t, 3>{0, kNoIndex, 0});
+
+  const auto relative = read(kCorners + "vt 0 0\nvn 0 0 1\nf -4/-1/-1 -3//-1 -2/1 -1\nvn 0 1 0\nf 1//-1 2//-2 3/1/2\n");
+  REQUIRE(relative);
+  CHECK(relative->normal_indices[0] == std::array<uint32_t, 3>{0, 0, kNoIndex});
+  CHECK(relative->normal_indices[1] == std::array<uint32_t, 3>{0, kNoIndex, kNoIndex});
+  CHECK(relative->normal_indices[2] == std::array<uint32_t, 3>{1, 0, 1});
 }
 
 TEST_CASE("mtl: values, defaults and what is wrong with them") {
