@@ -3,19 +3,9 @@
 #include <cmath>
 #include <unordered_map>
 
-#include "core/box.h"
-
 namespace kd::mesh {
 
 namespace {
-
-Lattice lattice_of(const Mesh& mesh, int bits) {
-  Box3d box_model;
-  for (const auto& triangle : mesh.triangles) {
-    for (uint32_t v : triangle) box_model.extend(mesh.positions[v]);
-  }
-  return {box_model.lo, box_model.extent(), bits};
-}
 
 /// Exact: coordinates have 24 bits at most, so a cross product's components have 51.
 bool has_area(Vec3u a, Vec3u b, Vec3u c) {
@@ -53,9 +43,19 @@ class VertexTable {
 
 }  // namespace
 
-LatticeMesh normalise(const Mesh& mesh, int bits) {
+Box3d bounds(const Mesh& mesh) {
+  Box3d box_model;
+  for (const auto& triangle : mesh.triangles) {
+    for (uint32_t v : triangle) box_model.extend(mesh.positions[v]);
+  }
+  return box_model;
+}
+
+LatticeMesh normalise(const Mesh& mesh, int bits) { return normalise(mesh, bits, bounds(mesh)); }
+
+LatticeMesh normalise(const Mesh& mesh, int bits, const Box3d& box_model) {
   LatticeMesh out;
-  out.lattice = lattice_of(mesh, bits);
+  out.lattice = {box_model.lo, box_model.extent(), bits};
   out.triangles.reserve(mesh.triangles.size());
   out.kept.reserve(mesh.triangles.size());
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/box.h"
 #include "core/lattice.h"
 #include "mesh/mesh.h"
 
@@ -24,7 +25,14 @@ struct LatticeMesh {
   uint32_t first_collapsed = kNoIndex;  // source primitive of the first of them
 };
 
+/// Model space: around the corners of the mesh's triangles.
+Box3d bounds(const Mesh& mesh);
+
 /// `mesh` is clean: finite, with at least one triangle. Its bounding box may be flat along one axis or more.
 LatticeMesh normalise(const Mesh& mesh, int bits);
+
+/// The same in a given box of model space, in which all of `mesh` lies. Parts of a mesh that are normalised in one box
+/// lie on one lattice: vertices that they share stay shared, so that no seam opens between them.
+LatticeMesh normalise(const Mesh& mesh, int bits, const Box3d& box_model);
 
 }  // namespace kd::mesh
