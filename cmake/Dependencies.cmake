@@ -16,6 +16,12 @@ add_library(kd_openmesh INTERFACE)
 target_include_directories(kd_openmesh SYSTEM INTERFACE ${KD_OPENMESH_INCLUDE})
 target_link_libraries(kd_openmesh INTERFACE ${KD_OPENMESH_CORE})
 
+# The header alone: what we use of it is compiled into libkd.
+find_path(KD_TINYGLTF_INCLUDE tiny_gltf.h REQUIRED)
+add_library(kd_tinygltf INTERFACE)
+target_include_directories(kd_tinygltf SYSTEM INTERFACE ${KD_TINYGLTF_INCLUDE})
+target_link_libraries(kd_tinygltf INTERFACE nlohmann_json::nlohmann_json)
+
 find_path(KD_XXHASH_INCLUDE xxhash.h REQUIRED)
 find_library(KD_XXHASH xxhash REQUIRED)
 add_library(kd_xxhash INTERFACE)

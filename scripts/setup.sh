@@ -7,7 +7,7 @@ die() { printf 'error: %s\n' "$*" >&2; exit 1; }
 
 packages=(
   g++ cmake ninja-build pkg-config
-  libtinyobjloader-dev libopenmesh-dev libcli11-dev libflatbuffers-dev flatbuffers-compiler
+  libtinyobjloader-dev libtinygltf-dev libopenmesh-dev libcli11-dev libflatbuffers-dev flatbuffers-compiler
   libopenexr-dev libimath-dev openexr libtbb-dev libfmt-dev libxxhash-dev libstb-dev nlohmann-json3-dev
   doctest-dev libembree-dev
 )

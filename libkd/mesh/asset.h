@@ -16,6 +16,7 @@ namespace kd::mesh {
 struct NamedMesh {
   std::string name;  // no two in an asset are the same, also without regard to case; fit to be part of a file name
   Mesh mesh;
+  uint32_t whole = 0;  // meshes with the same number were one before they were split: normalise them in one box
 };
 
 /// One mesh, somewhere in the scene.
@@ -40,8 +41,8 @@ struct AssetLight {
 };
 
 struct Asset {
-  std::vector<NamedMesh> meshes;  // at least one
-  std::vector<MeshInstance> instances;
+  std::vector<NamedMesh> meshes;        // at least one
+  std::vector<MeshInstance> instances;  // each mesh may have any number of them
   std::optional<AssetCamera> camera;
   std::vector<AssetLight> lights;
   std::vector<std::string> warnings;  // of the file as a whole; a mesh's own are with it
@@ -53,7 +54,9 @@ struct Asset {
 enum class Split : uint8_t { none, object, material };
 
 /// Reads `path` as `read_mesh` does, and glTF 2.0 (.gltf, .glb) with all its meshes. `split` makes one mesh of each
-/// OBJ group or object, or of each material. Errors as `read_mesh`.
+/// OBJ group or object, or of each material of a mesh; where there is nothing to split by, a warning says so. Meshes
+/// are named after what they were split by, and else by their names in the file, or after the file. Errors as
+/// `read_mesh`, and ErrorClass::missing for a file that a glTF file needs.
 Result<Asset> read_asset(const std::string& path, const ReadOptions& options, Split split);
 
 }  // namespace kd::mesh

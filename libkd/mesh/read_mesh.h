@@ -14,7 +14,8 @@ struct ReadOptions {
   bool ambient_from_diffuse = false;
 };
 
-/// The mesh in `path`, whose extension (in any case) names the format. Polygons become triangles: convex ones a fan
+/// The mesh in `path`, whose extension (in any case) names the format; glTF, which holds more than one, is left to
+/// `read_asset`. Polygons become triangles: convex ones a fan
 /// from their first corner, concave ones by ear clipping. Coordinates may be NaN or infinite (in text PLY
 /// they are an error). Safe to call from several
 /// threads at once.
