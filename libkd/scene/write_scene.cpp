@@ -1,0 +1,212 @@
+#include "scene/write_scene.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <iterator>
+#include <limits>
+#include <optional>
+#include <string_view>
+#include <unordered_set>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "sys/atomic_file.h"
+
+namespace kd::scene {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Bytes of the UTF-8 character that `text` begins with; 0 if it begins with none. No surrogates, no overlong forms.
+size_t character_length(std::string_view text) {
+  const auto byte = [&](size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
+  const auto goes_on = [&](size_t i) { return (byte(i) & 0xc0) == 0x80; };
+  const unsigned a = byte(0), b = byte(1);
+  if (a < 0x80) return 1;
+  if (a >= 0xc2 && a <= 0xdf && goes_on(1)) return 2;
+  if (a >= 0xe0 && a <= 0xef && goes_on(1) && goes_on(2)) {
+    return (a == 0xe0 && b < 0xa0) || (a == 0xed && b >= 0xa0) ? 0 : 3;
+  }
+  if (a >= 0xf0 && a <= 0xf4 && goes_on(1) && goes_on(2) && goes_on(3)) {
+    return (a == 0xf0 && b < 0x90) || (a == 0xf4 && b >= 0x90) ? 0 : 4;
+  }
+  return 0;
+}
+
+/// `text` with everything that no name in a scene may hold replaced.
+std::string clean_text(std::string_view text) {
+  std::string out;
+  while (!text.empty()) {
+    const size_t length = character_length(text);
+    const bool is_control = static_cast<unsigned char>(text[0]) < ' ' || text[0] == 0x7f;
+    out += length == 0 || is_control ? "\xEF\xBF\xBD" : text.substr(0, length);
+    text.remove_prefix(length == 0 ? 1 : length);
+  }
+  return out;
+}
+
+std::string json_string(std::string_view clean) {
+  std::string out = "\"";
+  for (const char c : clean) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + '"';
+}
+
+/// Names as they are written: clean, not empty, no two the same.
+std::vector<std::string> object_names(const Scene& scene) {
+  std::unordered_set<std::string> taken;
+  std::vector<std::string> names;
+  for (const SceneObject& object : scene.objects) {
+    const std::string clean = clean_text(object.name.empty() ? "object" : object.name);
+    std::string name = clean;
+    for (size_t i = names.size(); !taken.insert(name).second; ++i) name = fmt::format("{} {}", clean, i + 1);
+    names.push_back(name);
+  }
+  return names;
+}
+
+/// `file`, as it can be opened from the working directory, relative to the folder of `scene_path`. Folders are
+/// resolved, since `..` leads elsewhere behind a link; the file itself may be one.
+fs::path relative_file(const std::string& file, const std::string& scene_path) {
+  const auto folder_of = [](const fs::path& path) { return fs::weakly_canonical(fs::absolute(path).parent_path()); };
+  return (folder_of(file) / fs::path(file).filename()).lexically_relative(folder_of(scene_path));
+}
+
+class Writer {
+ public:
+  explicit Writer(const Scene& scene, const std::string& path) : scene_(scene), path_(path) {}
+
+  Result<std::string> write();
+
+ private:
+  template <class... Arguments>
+  void put(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
+    fmt::format_to(std::back_inserter(out_), format, std::forward<Arguments>(arguments)...);
+  }
+  std::string number(double value) {
+    if (!std::isfinite(value)) fail("a number of the scene is not finite, which no scene file can hold");
+    return fmt::format("{}", value);
+  }
+  /// The shortest digits, unless the double that they are read as is beyond the largest float or so near the middle of
+  /// two that it becomes the other one.
+  std::string number(float value) {
+    const std::string text = fmt::format("{}", value);
+    const double read = std::strtod(text.c_str(), nullptr);
+    const bool fits = std::fabs(read) <= double{std::numeric_limits<float>::max()};
+    return fits && static_cast<float>(read) == value ? text : number(double{value});
+  }
+  template <class T>
+  std::string vector(Vec3<T> v) {
+    return fmt::format("[{}, {}, {}]", number(v.x), number(v.y), number(v.z));
+  }
+  std::string frame(const Frame& f) {
+    return fmt::format(R"({{"point": {}, "x_axis": {}, "y_axis": {}, "z_axis": {}}})", vector(f.point),
+                       vector(f.x_axis), vector(f.y_axis), vector(f.z_axis));
+  }
+  std::string placement(const Placement& placement);
+  std::string material(const Material& m) {
+    return fmt::format(R"({{"ambient": {}, "diffuse": {}, "specular": {}, "shininess": {}}})", vector(m.ambient),
+                       vector(m.diffuse), vector(m.specular), number(m.shininess));
+  }
+  void put_light(const Light& light);
+  void put_object(const SceneObject& object, const std::string& name);
+  void put_part(const Part& part, const std::vector<std::string>& names);
+
+  void fail(std::string what) {
+    if (!error_) error_ = Error{ErrorClass::scene, path_, std::move(what)};
+  }
+
+  const Scene& scene_;
+  const std::string& path_;
+  std::string out_;
+  std::optional<Error> error_;
+};
+
+/// As members that follow others; nothing for what is by default.
+std::string Writer::placement(const Placement& placement) {
+  if (const auto* box = std::get_if<BoxPlacement>(&placement)) return ", \"box\": " + frame(box->box);
+  if (const auto* f = std::get_if<FramePlacement>(&placement)) return ", \"frame\": " + frame(f->frame);
+  const auto& t = std::get<TransformPlacement>(placement);
+  const TransformPlacement standard;
+  std::string out;
+  if (t.translate != standard.translate) out += ", \"translate\": " + vector(t.translate);
+  if (t.rotate_axis != standard.rotate_axis || t.rotate_degrees != 0) {
+    out += fmt::format(R"(, "rotate": {{"axis": {}, "degrees": {}}})", vector(t.rotate_axis), number(t.rotate_degrees));
+  }
+  if (t.scale != standard.scale) out += ", \"scale\": " + vector(t.scale);
+  return out;
+}
+
+void Writer::put_light(const Light& light) {
+  if (light.kind == LightKind::point) {
+    put(R"({{"kind": "point", "position": {}, "colour": {}}})", vector(light.position), vector(light.colour));
+  } else {
+    put(R"({{"kind": "directional", "direction": {}, "colour": {}}})", vector(light.direction), vector(light.colour));
+  }
+}
+
+void Writer::put_object(const SceneObject& object, const std::string& name) {
+  const std::string file = relative_file(object.file, path_).string();
+  if (file.empty() || clean_text(file) != file) {
+    fail(fmt::format("the file name of object '{}' cannot be in a scene file: rename it", name));
+  }
+  put(R"({{"name": {}, "file": {}}})", json_string(name), json_string(file));
+}
+
+void Writer::put_part(const Part& part, const std::vector<std::string>& names) {
+  put("{{");
+  if (!part.name.empty()) put("\"name\": {}, ", json_string(clean_text(part.name)));
+  put("\"object\": {}{}", json_string(names[part.object]), placement(part.placement));
+  if (part.material) put(", \"material\": {}", material(*part.material));
+  put("}}");
+}
+
+Result<std::string> Writer::write() {
+  /// `one` for each of `items`, one a line behind `indent`.
+  const auto put_list = [&](const auto& items, const char* indent, const auto& one) {
+    const char* before = "";
+    for (const auto& item : items) {
+      put("{}\n{}", std::exchange(before, ","), indent);
+      one(item);
+    }
+  };
+  put("{{\n  \"film\": {{\"width\": {}, \"height\": {}}},\n", scene_.film.width, scene_.film.height);
+  const Camera& camera = scene_.camera;
+  put("  \"camera\": {{\"position\": {}, \"target\": {}, \"up\": {}, \"vertical_fov\": {}}},\n",
+      vector(camera.position), vector(camera.target), vector(camera.up), number(camera.vertical_fov_degrees));
+  put("  \"background\": {},\n  \"ambient\": {},\n  \"lights\": [", vector(scene_.background), vector(scene_.ambient));
+  put_list(scene_.lights, "    ", [&](const Light& light) { put_light(light); });
+  put("{}],\n  \"objects\": [", scene_.lights.empty() ? "" : "\n  ");
+  const std::vector<std::string> names = object_names(scene_);
+  put_list(scene_.objects, "    ", [&](const SceneObject& object) {
+    put_object(object, names[static_cast<size_t>(&object - scene_.objects.data())]);
+  });
+  put("\n  ],\n  \"characters\": [");
+  put_list(scene_.characters, "    ", [&](const Character& character) {
+    put("{{");
+    if (!character.name.empty()) put("\"name\": {}, ", json_string(clean_text(character.name)));
+    put("\"parts\": [");
+    put_list(character.parts, "      ", [&](const Part& part) { put_part(part, names); });
+    put("\n    ]}}");
+  });
+  put("\n  ]\n}}\n");
+  if (error_) return *error_;
+  return std::move(out_);
+}
+
+}  // namespace
+
+Result<void> write_scene(const Scene& scene, const std::string& path) {
+  const Result<std::string> text = Writer(scene, path).write();
+  if (!text) return text.error();
+  return write_file(path, *text);
+}
+
+}  // namespace kd::scene
