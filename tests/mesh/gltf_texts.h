@@ -6,6 +6,7 @@
 #include <initializer_list>
 #include <string>
 
+#include <doctest/doctest.h>
 #include <fmt/format.h>
 
 namespace kd::test {
@@ -43,6 +44,13 @@ inline std::string glb(std::string json, std::string binary) {
   const auto size = [](size_t n) { return static_cast<uint32_t>(n); };
   return raw<uint32_t>({0x46546c67, 2, size(28 + json.size() + binary.size()), size(json.size()), 0x4e4f534a}) + json +
          raw<uint32_t>({size(binary.size()), 0x004e4942}) + binary;
+}
+
+/// `text` with the first `from` replaced; a test that does not find it fails.
+inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const size_t at = text.find(from);
+  REQUIRE_MESSAGE(at != std::string::npos, from);
+  return text.replace(at, from.size(), to);
 }
 
 /// The unit square in z = 0 as two triangles: four positions, four normals along z, six 16-bit indices.
