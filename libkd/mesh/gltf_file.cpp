@@ -28,8 +28,13 @@ constexpr int kMostNested = 64;  // arrays and objects around a value
 constexpr uint64_t kMostIndex = std::numeric_limits<int32_t>::max();
 constexpr uint64_t kMostBytes = uint64_t{1} << 53;
 
+/// What is wrong may repeat names of the file: cut short, and made one line.
 Error failed(const std::string& path, std::string what) {
-  return {ErrorClass::mesh, path, std::move(what) + "; export the mesh again"};
+  what.resize(std::min(what.size(), size_t{300}));
+  for (char& c : what) {
+    if (static_cast<unsigned char>(c) < ' ' || c == 0x7f) c = ' ';
+  }
+  return {ErrorClass::mesh, path, what + "; export the mesh again"};
 }
 
 /// The JSON, and the bytes of the first buffer if it is in the same file.
@@ -103,7 +108,7 @@ Result<Json> parse_json(std::string_view text, const std::string& path) {
   try {
     root = Json::parse(text);
   } catch (const Json::exception& fault) {
-    return failed(path, fmt::format("not valid JSON: {}", std::string_view(fault.what()).substr(0, 200)));
+    return failed(path, fmt::format("not valid JSON: {}", fault.what()));
   }
   if (!root.is_object()) return failed(path, "the JSON is not an object: this is no glTF file");
   return root;
@@ -254,15 +259,6 @@ Result<void> open_buffers(const Json& root, const Container& container, const st
   return {};
 }
 
-/// The first line of what tinygltf says.
-std::string first_line(const std::string& text) {
-  std::string line = text.substr(0, std::min(text.find('\n'), size_t{200}));
-  for (char& c : line) {
-    if (static_cast<unsigned char>(c) < ' ' || c == 0x7f) c = ' ';
-  }
-  return line;
-}
-
 }  // namespace
 
 Result<GltfFile> open_gltf(Bytes bytes, const std::string& path) {
@@ -290,7 +286,7 @@ Result<GltfFile> open_gltf(Bytes bytes, const std::string& path) {
   const bool parsed = tinygltf::TinyGLTF().LoadASCIIFromString(&file.model, &error, &warning, text.c_str(),
                                                                static_cast<unsigned>(text.size()), "");
   // It says that a primitive is left out, and goes on.
-  if (!parsed || !error.empty()) return failed(path, fmt::format("tinygltf: {}", first_line(error)));
+  if (!parsed || !error.empty()) return failed(path, fmt::format("tinygltf: {}", error.substr(0, error.find('\n'))));
   return file;
 }
 

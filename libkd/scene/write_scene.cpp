@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 #include <string_view>
+#include <system_error>
 #include <unordered_set>
 #include <utility>
 #include <variant>
@@ -72,10 +73,16 @@ std::vector<std::string> object_names(const Scene& scene) {
   return names;
 }
 
-/// `file`, as it can be opened from the working directory, relative to the folder of `scene_path`. Folders are
-/// resolved, since `..` leads elsewhere behind a link; the file itself may be one.
+/// The folder of `path` without links, where that can be found out: `..` leads elsewhere behind one.
+fs::path folder_of(const fs::path& path) {
+  std::error_code fault;
+  const fs::path folder = fs::absolute(path, fault).parent_path();
+  const fs::path resolved = fs::weakly_canonical(folder, fault);
+  return fault ? folder.lexically_normal() : resolved;
+}
+
+/// `file`, as it can be opened from the working directory, relative to the folder of `scene_path`. It may be a link.
 fs::path relative_file(const std::string& file, const std::string& scene_path) {
-  const auto folder_of = [](const fs::path& path) { return fs::weakly_canonical(fs::absolute(path).parent_path()); };
   return (folder_of(file) / fs::path(file).filename()).lexically_relative(folder_of(scene_path));
 }
 

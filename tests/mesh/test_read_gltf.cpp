@@ -254,6 +254,8 @@ TEST_CASE("gltf: numbers that point to nothing") {
            Row{R"("POSITION": 0)", R"("POSITION": 4294967296)", "must be a whole number"},
            Row{R"("POSITION": 0)", R"("POSITION": "0")", "must be a whole number"},
            Row{R"("POSITION": 0)", R"("POSITION": 2)", "accessor 2 is not of vectors"},
+           Row{R"("POSITION": 0)", R"("a\nb": -1)", "must be a whole number"},
+           Row{R"("version": "2.0")", R"("version": "3\n0")", "glTF version 3 0"},
            Row{R"("NORMAL": 1)", R"("NORMAL": 99)", "accessor 99"},
            Row{R"("indices": 2)", R"("indices": 99)", "out of bounds"},
            Row{R"("indices": 2)", R"("indices": 0)", "accessor 0 is not of scalars"},
