@@ -39,9 +39,14 @@ Result<AtomicFile> AtomicFile::create(const std::string& path) {
   std::string temporary = path + ".XXXXXX";
   const int descriptor = ::mkstemp(temporary.data());
   if (descriptor < 0) return output_error(path, "write");
-  // mkstemp makes private files; give the result the permissions that any new file would have.
-  const mode_t mask = ::umask(0);
-  ::umask(mask);
+  // mkstemp makes private files; give the result the permissions that any new file would have. The mask is asked for
+  // once: asking sets it for a moment, and of two threads that ask at a time one would see, and leave, what the other
+  // set.
+  static const mode_t mask = [] {
+    const mode_t current = ::umask(0);
+    ::umask(current);
+    return current;
+  }();
   ::fchmod(descriptor, 0666 & ~mask);
   ::close(descriptor);
   return AtomicFile(path, temporary);
