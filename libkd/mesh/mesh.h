@@ -25,6 +25,7 @@ struct Mesh {
   std::vector<std::string> group_names;                 // empty if the source has no groups
   std::vector<uint32_t> group_ids;                      // per triangle; empty if no groups
   std::vector<std::string> warnings;                    // what the reader had to replace or leave out, a line each
+  std::vector<std::string> dependencies;                // paths of the further files it is made of: mesh/dependencies.h
 };
 
 }  // namespace kd::mesh

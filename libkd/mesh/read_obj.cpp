@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "mesh/dependencies.h"
 #include "mesh/formats.h"
 #include "mesh/mesh_builder.h"
 #include "mesh/obj_lines.h"
@@ -214,6 +215,7 @@ Result<Mesh> read_obj(Bytes bytes, const std::string& path, const ReadOptions& o
     reading.builder.mesh.group_names.clear();
     reading.builder.mesh.group_ids.clear();
   }
+  reading.builder.mesh.dependencies = mtl_files(text, path);
   return std::move(reading.builder).finish(path);
 }
 

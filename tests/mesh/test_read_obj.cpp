@@ -237,3 +237,18 @@ TEST_CASE("obj: faults say where they are") {
     CHECK(mentions(fault(empty).what, "no faces"));
   }
 }
+
+TEST_CASE("obj: what it depends on is what its mtllib lines name, there or not") {
+  const test::TempFolder folder;
+  folder.write("b.mtl", "newmtl red\nKd 1 0 0\n");
+  folder.write("my own.mtl", "newmtl green\nKd 0 1 0\n");
+  const std::string path = folder.write("a.obj",
+                                        "mtllib a.mtl b.mtl\r\n  mtllib my\\ own.mtl \r\n# mtllib no.mtl\n"
+                                        "mtllibrary\nmtllib b.mtl\nusemtl green\n" +
+                                            kCorners + "f 1 2 3\nusemtl red\nf 1 3 4\n");
+  const auto mesh = read_mesh(path, {});
+  REQUIRE(mesh);
+  CHECK(mesh->dependencies ==
+        std::vector<std::string>{folder.file("a.mtl"), folder.file("b.mtl"), folder.file("my own.mtl")});
+  CHECK(mesh->material_names == std::vector<std::string>{"red", "green"});
+}

@@ -1,0 +1,115 @@
+#include "mesh/dependencies.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cstring>
+#include <filesystem>
+
+#include <nlohmann/json.hpp>
+
+#include "mesh/text.h"
+
+namespace kd::mesh {
+
+namespace {
+
+/// As tinyobjloader parts them: at spaces that no backslash stands before.
+std::vector<std::string> split_names(std::string_view list) {
+  std::vector<std::string> names(1);
+  bool escaped = false;
+  for (const char c : list) {
+    if (!escaped && c == '\\') {
+      escaped = true;
+    } else if (!escaped && c == ' ') {
+      names.emplace_back();
+    } else {
+      names.back() += c;
+      escaped = false;
+    }
+  }
+  std::erase(names, "");
+  return names;
+}
+
+/// Lines that end in a backslash go on in the next.
+std::string rest_of_line(std::string_view text, size_t start) {
+  std::string line;
+  while (start < text.size()) {
+    const size_t end = std::min(text.find_first_of("\r\n", start), text.size());
+    line += text.substr(start, end - start);
+    if (!line.ends_with('\\')) break;
+    line.back() = ' ';
+    start = end + (text.substr(end).starts_with("\r\n") ? 2 : 1);
+  }
+  return line;
+}
+
+bool has_extension(const std::string& path, std::string_view extension) {
+  const std::string own = std::filesystem::path(path).extension().string();
+  const auto same = [](char a, char b) { return (a >= 'A' && a <= 'Z' ? a - 'A' + 'a' : a) == b; };
+  return std::equal(own.begin(), own.end(), extension.begin(), extension.end(), same);
+}
+
+/// What a URI says with %xx for some characters.
+std::string decoded(std::string_view uri) {
+  std::string text;
+  for (size_t i = 0; i < uri.size(); ++i) {
+    unsigned value = 0;
+    const char* digits = uri.data() + i + 1;
+    if (uri[i] == '%' && i + 2 < uri.size() && std::from_chars(digits, digits + 2, value, 16).ptr == digits + 2) {
+      text += static_cast<char>(value);
+      i += 2;
+    } else {
+      text += uri[i];
+    }
+  }
+  return text;
+}
+
+/// The JSON of a glTF file, which may be the first chunk of a GLB container.
+std::string_view json_of(std::string_view text) {
+  constexpr size_t kHeader = 20;
+  if (!text.starts_with("glTF") || text.size() < kHeader) return text;
+  uint32_t size = 0;
+  std::memcpy(&size, text.data() + 12, sizeof size);
+  return text.substr(kHeader, size);
+}
+
+std::vector<std::string> buffer_files(std::string_view text, const std::string& path) {
+  std::vector<std::string> files;
+  const auto root = nlohmann::json::parse(json_of(text), nullptr, false);
+  if (!root.is_object() || !root.contains("buffers")) return files;
+  for (const auto& buffer : root["buffers"]) {
+    if (!buffer.is_object() || !buffer.contains("uri") || !buffer["uri"].is_string()) continue;
+    const std::string uri = buffer["uri"];
+    if (uri.starts_with("data:")) continue;
+    const std::string file = (std::filesystem::path(path).parent_path() / decoded(uri)).string();
+    if (std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);
+  }
+  return files;
+}
+
+}  // namespace
+
+std::vector<std::string> dependencies(std::span<const std::byte> bytes, const std::string& path) {
+  if (has_extension(path, ".obj")) return mtl_files(text_of(bytes), path);
+  if (has_extension(path, ".gltf") || has_extension(path, ".glb")) return buffer_files(text_of(bytes), path);
+  return {};
+}
+
+std::vector<std::string> mtl_files(std::string_view text, const std::string& path) {
+  std::vector<std::string> files;
+  Tokens tokens(text);
+  do {
+    if (tokens.next_in_line() != "mtllib") continue;
+    const std::string list = rest_of_line(text, tokens.offset());
+    if (list.empty()) continue;
+    for (const std::string& name : split_names(std::string_view(list).substr(1))) {
+      const std::string file = (std::filesystem::path(path).parent_path() / name).string();
+      if (std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);
+    }
+  } while (tokens.next_line());
+  return files;
+}
+
+}  // namespace kd::mesh
