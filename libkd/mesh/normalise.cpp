@@ -1,11 +1,14 @@
 #include "mesh/normalise.h"
 
+#include <algorithm>
 #include <cmath>
 #include <unordered_map>
 
 namespace kd::mesh {
 
 namespace {
+
+double displacement(const Lattice& lattice, Vec3d p_model, Vec3u q) { return length(lattice.to_model(q) - p_model); }
 
 /// Exact: coordinates have 24 bits at most, so a cross product's components have 51.
 bool has_area(Vec3u a, Vec3u b, Vec3u c) {
@@ -68,6 +71,10 @@ LatticeMesh normalise(const Mesh& mesh, int bits, const Box3d& box_model) {
     for (size_t k = 0; k < 3; ++k) corners[k] = out.lattice.to_lattice(mesh.positions[mesh.triangles[i][k]]);
     if (!has_area(corners[0], corners[1], corners[2])) {
       if (out.collapsed_triangles++ == 0) out.first_collapsed = mesh.source_primitives[i];
+      for (size_t k = 0; k < 3; ++k) {
+        const double moved = displacement(out.lattice, mesh.positions[mesh.triangles[i][k]], corners[k]);
+        out.max_displacement = std::fmax(out.max_displacement, moved);
+      }
       continue;
     }
     std::array<uint32_t, 3> triangle;
@@ -77,7 +84,7 @@ LatticeMesh normalise(const Mesh& mesh, int bits, const Box3d& box_model) {
         const size_t before = out.vertices.size();
         new_index[v] = table.index(corners[k], out.vertices);
         if (out.vertices.size() == before) ++out.welded_vertices;
-        const double moved = length(out.lattice.to_model(corners[k]) - mesh.positions[v]);
+        const double moved = displacement(out.lattice, mesh.positions[v], corners[k]);
         out.max_displacement = std::fmax(out.max_displacement, moved);
         sum_of_squares += moved * moved;
         ++used;
@@ -89,6 +96,27 @@ LatticeMesh normalise(const Mesh& mesh, int bits, const Box3d& box_model) {
   }
   out.rms_displacement = used > 0 ? std::sqrt(sum_of_squares / static_cast<double>(used)) : 0;
   return out;
+}
+
+double max_displacement(const Mesh& mesh, const Lattice& lattice, double enough) {
+  double largest = 0;
+  for (const auto& triangle : mesh.triangles) {
+    for (uint32_t v : triangle) {
+      const Vec3d p_model = mesh.positions[v];
+      largest = std::fmax(largest, displacement(lattice, p_model, lattice.to_lattice(p_model)));
+    }
+    if (largest > enough) break;
+  }
+  return largest;
+}
+
+std::optional<int> fewest_bits(std::span<const Mesh* const> meshes, const Box3d& box, double allowed) {
+  for (int bits = kFewestUsefulBits; bits <= kMaxLatticeBits; ++bits) {
+    const Lattice lattice{box.lo, box.extent(), bits};
+    const auto keeps = [&](const Mesh* mesh) { return max_displacement(*mesh, lattice, allowed) <= allowed; };
+    if (std::all_of(meshes.begin(), meshes.end(), keeps)) return bits;
+  }
+  return std::nullopt;
 }
 
 }  // namespace kd::mesh

@@ -3,6 +3,9 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "core/box.h"
@@ -18,7 +21,7 @@ struct LatticeMesh {
   std::vector<Vec3u> vertices;                     // lattice space
   std::vector<std::array<uint32_t, 3>> triangles;  // indices into vertices
   std::vector<uint32_t> kept;                      // per triangle: its number in the mesh that was normalised
-  double max_displacement = 0;                     // model units: the largest distance a vertex moved
+  double max_displacement = 0;                     // model units: the largest distance a vertex moved, dropped ones too
   double rms_displacement = 0;                     // model units, over the vertices in use
   uint64_t welded_vertices = 0;                    // distinct positions that share a lattice point with an earlier one
   uint64_t collapsed_triangles = 0;     // without area on the lattice: no ray can meet them, so they are dropped
@@ -34,5 +37,19 @@ LatticeMesh normalise(const Mesh& mesh, int bits);
 /// The same in a given box of model space, in which all of `mesh` lies. Parts of a mesh that are normalised in one box
 /// lie on one lattice: vertices that they share stay shared, so that no seam opens between them.
 LatticeMesh normalise(const Mesh& mesh, int bits, const Box3d& box_model);
+
+/// What `normalise` would give as LatticeMesh::max_displacement on `lattice`, at a fraction of the cost. Stops at the
+/// first displacement above `enough` and returns that.
+double max_displacement(const Mesh& mesh, const Lattice& lattice,
+                        double enough = std::numeric_limits<double>::infinity());
+
+/// Fewer bits than this are not worth looking for: a vertex takes one word up to here.
+constexpr int kFewestUsefulBits = 10;
+
+/// The fewest bits, from kFewestUsefulBits on, with which no vertex of these meshes, all on one lattice over `box`,
+/// moves further than `allowed` (model units); nothing if kMaxLatticeBits do not keep it. More bits may move a vertex
+/// further (one that fewer happened to hit), so every number of bits is tried in turn; those that are too few are found
+/// out after a vertex or two.
+std::optional<int> fewest_bits(std::span<const Mesh* const> meshes, const Box3d& box, double allowed);
 
 }  // namespace kd::mesh
