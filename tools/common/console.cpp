@@ -1,13 +1,16 @@
 #include "common/console.h"
 
+#include <algorithm>
 #include <atomic>
 #include <charconv>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <new>
+#include <set>
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "sys/atomic_file.h"
@@ -78,23 +81,55 @@ CLI::Validator file_name() {
   return CLI::Validator([](std::string& text) -> std::string { return text.empty() ? "needs a file name" : ""; }, "");
 }
 
-Result<void> check_outputs(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs) {
-  const auto same = [](const std::string& a, const std::string& b) {
+namespace {
+
+/// A set of files under any of their names.
+class Files {
+ public:
+  bool contains(const std::string& path) const {
+    const auto is_known = [this](const std::string& identity) { return known_.contains(identity); };
+    const auto all = identities(path);
+    return std::any_of(all.begin(), all.end(), is_known);
+  }
+  void add(const std::string& path) {
+    for (std::string& identity : identities(path)) known_.insert(std::move(identity));
+  }
+
+ private:
+  /// Where the name leads and, if there is a file, which it is: it may have several names.
+  static std::vector<std::string> identities(const std::string& path) {
     std::error_code none;
-    if (std::filesystem::equivalent(a, b, none)) return true;
-    return std::filesystem::weakly_canonical(a, none) == std::filesystem::weakly_canonical(b, none);
-  };
-  for (size_t i = 0; i < outputs.size(); ++i) {
-    const std::string& output = outputs[i];
-    if (output.empty() || output == "-") continue;
-    for (const std::string& input : inputs) {
-      if (same(output, input))
-        return Error{ErrorClass::usage, output, "the output is also an input: name another file"};
-    }
-    for (size_t j = 0; j < i; ++j) {
-      if (same(output, outputs[j]))
-        return Error{ErrorClass::usage, output, "two outputs have this name: name another file"};
-    }
+    std::vector<std::string> all{std::filesystem::weakly_canonical(path, none).string()};
+    struct stat status {};
+    if (::stat(path.c_str(), &status) == 0) all.push_back(fmt::format("{}:{}", status.st_dev, status.st_ino));
+    return all;
+  }
+
+  std::set<std::string> known_;
+};
+
+bool is_file(const std::string& output) { return !output.empty() && output != "-"; }
+
+}  // namespace
+
+Result<void> check_distinct(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs) {
+  Files read, written;
+  for (const std::string& input : inputs) read.add(input);
+  for (const std::string& output : outputs) {
+    if (!is_file(output)) continue;
+    if (read.contains(output))
+      return Error{ErrorClass::usage, output, "the output is also an input: name another file"};
+    if (written.contains(output))
+      return Error{ErrorClass::usage, output, "two outputs have this name: name another file"};
+    written.add(output);
+  }
+  return {};
+}
+
+Result<void> check_outputs(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs) {
+  if (auto distinct = check_distinct(outputs, inputs); !distinct) return distinct;
+  for (const std::string& output : outputs) {
+    if (!is_file(output)) continue;
     if (auto writable = check_writable(output); !writable) return writable;
   }
   return {};

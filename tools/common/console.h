@@ -27,7 +27,9 @@ CLI::Validator whole_number(int64_t lo, int64_t hi);
 CLI::Validator number(double lo, double hi);
 CLI::Validator file_name();
 
-/// That no output is an input or another output, and that each can be written; empty names and "-" are passed over.
+/// That no output is an input or another output; empty names and "-" are passed over.
+Result<void> check_distinct(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs);
+/// The same, and that each output can be written.
 Result<void> check_outputs(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs);
 
 /// Runs a command line: checks the processor, parses, calls `run`, and turns what CLI11 or anything else throws into a
