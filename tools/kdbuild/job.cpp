@@ -1,0 +1,44 @@
+#include "kdbuild/job.h"
+
+#include <filesystem>
+#include <map>
+
+#include <fmt/format.h>
+
+namespace kd::tools {
+
+namespace fs = std::filesystem;
+
+std::string Job::base() const {
+  const fs::path path = object;
+  return path.extension() == ".nkd" ? (path.parent_path() / path.stem()).string() : object;
+}
+
+std::string Job::name() const { return fs::path(base()).filename().string(); }
+
+bool names_folder(const std::string& output) {
+  std::error_code none;
+  return output.ends_with('/') || fs::is_directory(output, none);
+}
+
+Result<std::vector<Job>> plan_jobs(const std::vector<std::string>& inputs, const std::string& output) {
+  const bool folder = names_folder(output);
+  if (inputs.size() > 1 && !folder) {
+    return Error{ErrorClass::usage, output,
+                 fmt::format("not a folder, but there are {} inputs: end its name in /", inputs.size())};
+  }
+  std::vector<Job> jobs;
+  std::map<std::string, std::string> input_of;
+  for (const std::string& input : inputs) {
+    const std::string file = fs::path(input).stem().string() + ".nkd";
+    jobs.push_back({input, folder ? (fs::path(output) / file).string() : output});
+    const auto [other, fresh] = input_of.emplace(jobs.back().object, input);
+    if (!fresh) {
+      return Error{ErrorClass::usage, jobs.back().object,
+                   fmt::format("{} and {} would both be written to it: rename one", other->second, input)};
+    }
+  }
+  return jobs;
+}
+
+}  // namespace kd::tools

@@ -1,0 +1,35 @@
+// What goes in and what comes out: a command line's inputs, and the files that are made of each.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sys/result.h"
+
+namespace kd::tools {
+
+struct Job {
+  std::string input;
+  std::string object;  // the .nkd to write if the source is one mesh
+
+  /// `object` without .nkd. What is no single mesh becomes BASE.json, a scene, and BASE.NAME.nkd for each object in it.
+  std::string base() const;
+  std::string scene() const { return base() + ".json"; }
+  std::string part(const std::string& name) const { return base() + "." + name + ".nkd"; }
+  /// What BASE is without its folder.
+  std::string name() const;
+};
+
+/// The rest of what a run reads and writes: no object may be written over any of it.
+struct Neighbours {
+  std::vector<std::string> inputs, outputs;
+};
+
+/// Whether `output` names a folder: it ends in / or is one.
+bool names_folder(const std::string& output);
+
+/// A job for each input. ErrorClass::usage for several inputs and an output that is no folder, or for two inputs with
+/// one output.
+Result<std::vector<Job>> plan_jobs(const std::vector<std::string>& inputs, const std::string& output);
+
+}  // namespace kd::tools
