@@ -15,9 +15,9 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::array<std::string_view, 13> kKnown{
-    "$schema", "$id",      "$defs",      "$ref",  "title", "description",         "enum",
-    "type",    "required", "properties", "items", "const", "additionalProperties"};
+constexpr std::array<std::string_view, 14> kKnown{
+    "$schema", "$id",      "$defs",      "$ref",  "title", "description",          "enum",
+    "type",    "required", "properties", "items", "const", "additionalProperties", "oneOf"};
 
 bool has_type(const json& value, const std::string& type) {
   if (type == "object") return value.is_object();
@@ -43,6 +43,7 @@ class Checker {
     if (schema.contains("enum") &&
         std::find(schema["enum"].begin(), schema["enum"].end(), value) == schema["enum"].end())
       fault(at, "is none of " + schema["enum"].dump());
+    if (schema.contains("oneOf")) check_one_of(schema["oneOf"], value, at);
     if (value.is_object()) check_object(schema, value, at);
     if (!value.is_array() || !schema.contains("items")) return;
     for (size_t i = 0; i < value.size(); ++i) check(schema["items"], value[i], at + '/' + std::to_string(i));
@@ -63,6 +64,20 @@ class Checker {
         fault(at, "has the undocumented " + name);
       }
     }
+  }
+
+  /// The faults of the alternative that has the fewest: the one that was meant.
+  void check_one_of(const json& alternatives, const json& value, const std::string& at) {
+    size_t matches = 0;
+    std::vector<std::string> fewest;
+    for (const json& alternative : alternatives) {
+      Checker checker(root_);
+      checker.check(alternative, value, at);
+      if (checker.faults.empty()) ++matches;
+      if (fewest.empty() || checker.faults.size() < fewest.size()) fewest = checker.faults;
+    }
+    if (matches > 1) fault(at, "fits several alternatives");
+    if (matches == 0) faults.insert(faults.end(), fewest.begin(), fewest.end());
   }
 
   void fault(const std::string& at, const std::string& what) {

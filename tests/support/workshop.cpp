@@ -6,7 +6,7 @@
 #include <doctest/doctest.h>
 #include <unistd.h>
 
-#include "kdbuild/compile.h"
+#include "kdbuild/build_source.h"
 #include "scene/parse_scene.h"
 
 namespace kd::test {
@@ -44,7 +44,10 @@ std::string Workshop::compile(const fs::path& mesh, int bits) {
   fs::create_directories(object.parent_path());
   tools::CompileSettings settings;
   settings.bits = bits;
-  const auto report = tools::compile(mesh.string(), object.string(), settings, {});
+  const tools::Job job{mesh.string(), object.string()};
+  const auto source = tools::fingerprint(job.input);
+  REQUIRE_MESSAGE(source, (source ? "" : source.error().line()));
+  const auto report = tools::build_source(job, *source, settings, {}, {});
   REQUIRE_MESSAGE(report, (report ? "" : report.error().line()));
   return object.string();
 }

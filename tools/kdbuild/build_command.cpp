@@ -1,152 +1,263 @@
-// kdbuild build: one mesh in, one object out, and an account of what was done to it.
+// kdbuild build: meshes in, objects out, and an account of what was done to each.
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 
 #include <fmt/format.h>
 
 #include "common/console.h"
-#include "common/report.h"
+#include "kdbuild/batch.h"
+#include "kdbuild/build_report.h"
 #include "kdbuild/commands.h"
-#include "kdbuild/compile.h"
+#include "kdbuild/depfile.h"
 #include "kdbuild/explain_report.h"
 #include "mesh/read_mesh.h"
+#include "sys/atomic_file.h"
 #include "sys/parallel.h"
+#include "sys/timer.h"
 
 namespace kd::tools {
 
 namespace {
 
 struct Options {
-  std::string input, output, stats, plot;
+  std::vector<std::string> inputs;
+  std::string output, stats, depfile;
   CompileSettings settings;
-  unsigned threads = 0;
-  bool quiet = false;
-  bool explain = false;
+  unsigned jobs = 1, threads = 0;
+  bool force = false, dry_run = false, explain = false, quiet = false;
 };
 
-Json fault_json(const mesh::FaceFault& fault) {
-  Json j{{"count", fault.count}};
-  if (fault.count > 0) j["first"] = fault.first;
-  return j;
+/// All files that are read or written, as far as can be known before the sources are read.
+Neighbours neighbours(const std::vector<Item>& items, const Options& options) {
+  Neighbours all{{}, {options.stats, options.depfile}};
+  for (const Item& item : items) {
+    all.inputs.push_back(item.job.input);
+    all.inputs.insert(all.inputs.end(), item.fingerprint.files.begin(), item.fingerprint.files.end());
+    all.outputs.push_back(item.job.object);
+  }
+  return all;
 }
 
-Json report_json(const Options& options, const CompileReport& r) {
-  const auto vec = [](Vec3d v) { return Json::array({v.x, v.y, v.z}); };
-  const auto& t = r.topology;
-  return {
-      {"version", 1},
-      {"tool", version_text()},
-      {"input", options.input},
-      {"output", options.output},
-      {"settings", settings_text(options.settings)},
-      {"seconds",
-       {{"read", r.seconds.read},
-        {"clean", r.seconds.clean},
-        {"normalise", r.seconds.normalise},
-        {"build", r.seconds.build},
-        {"write", r.seconds.write}}},
-      {"mesh",
-       {{"source_triangles", r.source_triangles},
-        {"triangles", r.triangles},
-        {"vertices", r.vertices},
-        {"non_finite", fault_json(r.clean.non_finite)},
-        {"degenerate", fault_json(r.clean.degenerate)},
-        {"duplicate", fault_json(r.clean.duplicate)},
-        {"opposite", fault_json(r.clean.opposite)},
-        {"collapsed", fault_json(r.collapsed)},
-        {"welded_vertices", r.welded_vertices},
-        {"boundary_edges", t.boundary_edges},
-        {"non_manifold_edges", t.non_manifold_edges},
-        {"inconsistent_edges", t.inconsistent_edges},
-        {"components", t.components},
-        {"closed", t.closed}}},
-      {"lattice", {{"bits", r.lattice.bits}, {"origin", vec(r.lattice.origin)}, {"extent", vec(r.lattice.extent)}}},
-      {"error", {{"max", r.max_displacement}, {"rms", r.rms_displacement}}},
-      {"tree",
-       {{"sah_cost", r.tree.sah_cost},
-        {"nodes", r.tree.inner_nodes + r.tree.leaves},
-        {"leaves", r.tree.leaves},
-        {"empty_leaves", r.tree.empty_leaves},
-        {"references", r.references},
-        {"depth", r.tree.depth},
-        {"largest_leaf", r.tree.largest_leaf}}},
-      {"bytes",
-       {{"total", r.bytes}, {"per_triangle", static_cast<double>(r.bytes) / static_cast<double>(r.triangles)}}},
-      {"warnings", r.warnings},
-  };
+/// Makes the folder that outputs go to, and finds out before hours of work whether they can be written.
+Result<void> prepare_outputs(const std::vector<Item>& items, const Options& options) {
+  std::vector<std::string> written;
+  for (const Item& item : items) {
+    if (!item.error && !item.up_to_date()) written.push_back(item.job.object);
+  }
+  if (!written.empty() && names_folder(options.output)) {
+    std::error_code fault;
+    std::filesystem::create_directories(options.output, fault);
+    if (fault) return Error{ErrorClass::output, options.output, "cannot make the folder: " + fault.message()};
+  }
+  written.insert(written.end(), {options.stats, options.depfile});
+  return check_outputs(written, {});
 }
 
-void print_fault(const char* what, const char* fate, const mesh::FaceFault& fault) {
-  if (fault.count > 0) fmt::print("  {} {}: {}, the first is triangle {}\n", fault.count, what, fate, fault.first);
+/// What kept a source from being built, but for an interruption, which is told of once, at the end.
+void tell_of(const Error& error) {
+  if (error.error_class != ErrorClass::interrupted) fail(kKdbuild, error);
 }
 
-void print_report(const Options& options, const CompileReport& r) {
-  fmt::print("{} -> {}\n", options.input, options.output);
-  fmt::print("  {} triangles, {} vertices in {}; {} boundary and {} non-manifold edges, {}\n", r.triangles, r.vertices,
-             r.topology.components == 1 ? "one piece" : fmt::format("{} pieces", r.topology.components),
-             r.topology.boundary_edges, r.topology.non_manifold_edges, r.topology.closed ? "closed" : "not closed");
-  print_fault("with a coordinate that is not finite", "dropped", r.clean.non_finite);
-  print_fault("without area", "dropped", r.clean.degenerate);
-  print_fault("the same as an earlier one", "dropped", r.clean.duplicate);
-  print_fault("the back of an earlier one", "kept", r.clean.opposite);
-  print_fault("collapsed on the lattice", "dropped", r.collapsed);
-  fmt::print("  lattice: {} bits, largest displacement {:.3g}, RMS {:.3g} (model units)\n", r.lattice.bits,
-             r.max_displacement, r.rms_displacement);
-  fmt::print("  tree: SAH cost {:.2f}, {} nodes, {:.2f} references a triangle, depth {}\n", r.tree.sah_cost,
-             r.tree.inner_nodes + r.tree.leaves, static_cast<double>(r.references) / static_cast<double>(r.triangles),
-             r.tree.depth);
-  fmt::print("  {} bytes, {:.1f} a triangle; read {:.2f} s, clean {:.2f} s, build {:.2f} s, write {:.2f} s\n", r.bytes,
-             static_cast<double>(r.bytes) / static_cast<double>(r.triangles), r.seconds.read,
-             r.seconds.clean + r.seconds.normalise, r.seconds.build, r.seconds.write);
+void tell_of(const Item& item, bool quiet) {
+  if (item.error && item.report.failed.empty()) {
+    tell_of(*item.error);
+    return;
+  }
+  for (const Error& error : item.report.failed) tell_of(error);
+  for (const std::string& warning : item.report.warnings) warn(kKdbuild, item.job.input + ": " + warning);
+  for (const CompileReport& object : item.report.objects) {
+    const std::string mesh = object.mesh_name.empty() ? "" : fmt::format("mesh '{}': ", object.mesh_name);
+    for (const std::string& warning : object.warnings)
+      warn(kKdbuild, fmt::format("{}: {}{}", item.job.input, mesh, warning));
+  }
+  if (!quiet) print_report(item);
+}
+
+/// The status to exit with, that of the first source that failed; says how many did.
+int status_of(const std::vector<Item>& items) {
+  std::vector<Error> errors;
+  for (const Item& item : items) {
+    if (item.error) errors.push_back(*item.error);
+  }
+  const auto is_interrupt = [](const Error& error) { return error.error_class == ErrorClass::interrupted; };
+  const auto interrupt = std::find_if(errors.begin(), errors.end(), is_interrupt);
+  if (interrupt != errors.end()) {
+    if (items.size() == 1) return fail(kKdbuild, *interrupt);
+    return fail(kKdbuild, {ErrorClass::interrupted, "",
+                           fmt::format("interrupted: {} of {} done", items.size() - errors.size(), items.size())});
+  }
+  if (errors.empty()) return 0;
+  if (items.size() > 1) fmt::print(stderr, "{}: {} of {} failed\n", kKdbuild, errors.size(), items.size());
+  return static_cast<int>(errors.front().error_class);
+}
+
+/// What would be done, and why.
+int tell_plan(const std::vector<Item>& items) {
+  for (const Item& item : items) {
+    if (item.error) {
+      tell_of(*item.error);
+    } else if (item.up_to_date()) {
+      print_report(item);
+    } else {
+      const std::string& output = item.freshness.scene.empty() ? item.job.object : item.freshness.scene;
+      fmt::print("{} -> {}: to build ({})\n", item.job.input, output, item.freshness.stale);
+    }
+  }
+  return status_of(items);
+}
+
+/// Explains each object that a source was made into, as text and as an SVG beside it.
+Result<void> explain(const Item& item) {
+  for (const CompileReport& object : item.report.objects) {
+    const auto plot = std::filesystem::path(object.output).replace_extension(".svg").string();
+    if (auto explained = explain_file(object.output, true, plot); !explained) return explained;
+  }
+  return {};
+}
+
+/// Returns what went wrong with the telling; what went wrong with an item is in it.
+Result<void> build_and_tell(std::vector<Item>& items, const BatchSettings& settings, const Options& options) {
+  const bool quiet = options.quiet || options.stats == "-";
+  const size_t count = items.size();
+  const auto name = std::filesystem::path(items.front().job.input).filename().string();
+  const Progress bar =
+      progress_bar(count == 1 ? "building " + name : fmt::format("building {} meshes", count), options.quiet);
+  const Progress none = [](double) { return !interrupted(); };
+  size_t told = 0;
+  Result<void> outcome;
+  build_items(items, settings, count == 1 ? bar : none, [&](const Item& item) {
+    keep_going(bar, 1);  // clears the line
+    tell_of(item, quiet);
+    if (options.explain && outcome) outcome = explain(item);
+    if (++told < count) keep_going(bar, static_cast<double>(told) / static_cast<double>(count));
+  });
+  return outcome;
+}
+
+Result<void> write_depfile(const std::vector<Item>& items, const std::string& path) {
+  std::vector<Dependencies> rules;
+  for (const Item& item : items) {
+    if (!item.error) rules.push_back({item.output(), item.report.files});
+  }
+  return write_file(path, depfile_text(rules));
 }
 
 int run(const Options& options) {
   const ThreadLimit limit(options.threads);
+  const Timer timer;
   catch_interrupts();
   if (options.explain && options.stats == "-")
     return fail(kKdbuild, {ErrorClass::usage, "--explain", "stdout has the report of --stats -: give that a file"});
-  if (auto usable = check_outputs({options.output, options.stats, options.plot}, {options.input}); !usable) {
-    return fail(kKdbuild, usable.error());
+  const auto jobs = plan_jobs(options.inputs, options.output);
+  if (!jobs) return fail(kKdbuild, jobs.error());
+  BatchSettings settings{options.settings, options.force, options.jobs, {}};
+  std::vector<Item> items = look_at(*jobs, settings);
+  settings.neighbours = neighbours(items, options);
+  if (auto distinct = check_distinct(settings.neighbours.outputs, settings.neighbours.inputs); !distinct)
+    return fail(kKdbuild, distinct.error());
+  if (options.dry_run) return tell_plan(items);
+
+  if (auto usable = prepare_outputs(items, options); !usable) return fail(kKdbuild, usable.error());
+  if (auto told = build_and_tell(items, settings, options); !told) return fail(kKdbuild, told.error());
+  const int status = status_of(items);
+  const auto is_done = [](const Item& item) { return !item.report.objects.empty(); };
+  if (status == static_cast<int>(ErrorClass::interrupted) || std::none_of(items.begin(), items.end(), is_done))
+    return status;
+  if (!options.depfile.empty()) {
+    if (auto written = write_depfile(items, options.depfile); !written) return fail(kKdbuild, written.error());
   }
-  const std::string name = std::filesystem::path(options.input).filename().string();
-  const Progress progress = progress_bar(fmt::format("building {}", name), options.quiet);
-  auto report = compile(options.input, options.output, options.settings, progress);
-  keep_going(progress, 1);
-  if (!report) return fail(kKdbuild, report.error());
-  for (const std::string& warning : report->warnings) {
-    warn(kKdbuild, options.input + ": " + warning);
-  }
-  if (!options.quiet && options.stats != "-") print_report(options, *report);
   if (!options.stats.empty()) {
-    if (auto written = write_report(options.stats, report_json(options, *report)); !written)
-      return fail(kKdbuild, written.error());
+    const Json report = report_json(items, options.settings, timer.seconds());
+    if (auto written = write_report(options.stats, report); !written) return fail(kKdbuild, written.error());
   }
-  if (options.explain || !options.plot.empty()) {
-    if (auto explained = explain_file(options.output, options.explain, options.plot); !explained)
-      return fail(kKdbuild, explained.error());
-  }
-  return 0;
+  return status;
+}
+
+/// What an object will be.
+void add_object_options(CLI::App& c, const std::shared_ptr<Options>& options) {
+  CompileSettings& s = options->settings;
+  CLI::Option* bits = c.add_option("--bits", s.bits, "Bits of the lattice an axis")
+                          ->check(whole_number(kMinLatticeBits, kMaxLatticeBits))
+                          ->capture_default_str();
+  c.add_option("--max-error", s.max_error,
+               "Use the fewest bits, from 10 on, that move no vertex further than this (model units)")
+      ->check(number(1e-300, 1e300))
+      ->excludes(bits);
+  c.add_flag("--ambient-from-diffuse", s.ambient_from_diffuse,
+             "Take a material's ambient colour from its diffuse one, whatever the MTL's Ka says");
+  c.add_option_function<std::string>(
+       "--split",
+       [options](const std::string& by) {
+         options->settings.split = by == "object" ? mesh::Split::object : mesh::Split::material;
+       },
+       "Make an object of each object or group of the source, or of each material, and a scene of them")
+      ->check(CLI::IsMember({"object", "material"}));
+  c.add_option("--max-object-size", s.max_object_size,
+               "Bytes; a mesh that needs more is split into several objects, and a scene of them")
+      ->check(whole_number(kSmallestObjectLimit, kLargestObject))
+      ->capture_default_str();
+
+  const char* advanced = "Advanced: the tree";
+  c.add_option("--traversal-cost", s.tree.costs.traversal, "Cost of visiting a node, for the surface area heuristic")
+      ->check(number(0.001, 1000))
+      ->capture_default_str()
+      ->group(advanced);
+  c.add_option("--intersection-cost", s.tree.costs.intersection, "Cost of testing a triangle")
+      ->check(number(0.001, 1000))
+      ->capture_default_str()
+      ->group(advanced);
+  c.add_option("--empty-bonus", s.tree.costs.empty_bonus, "Share of a split's cost that cutting off empty space saves")
+      ->check(number(0, 0.99))
+      ->capture_default_str()
+      ->group(advanced);
+  c.add_option("--byte-price", s.tree.costs.byte_price,
+               "What a byte a triangle is worth, in SAH cost: 0.02 for the least cost, 0.5 for small objects")
+      ->check(number(0, 1000))
+      ->capture_default_str()
+      ->group(advanced);
+  c.add_option("--max-depth", s.tree.max_depth, "Longest path in inner nodes")
+      ->check(whole_number(1, kMaxDepth))
+      ->capture_default_str()
+      ->group(advanced);
+}
+
+/// What is done, and what is told of it.
+void add_run_options(CLI::App& c, const std::shared_ptr<Options>& options) {
+  c.add_flag("--force", options->force, "Build what is up to date too");
+  CLI::Option* explained =
+      c.add_flag("--explain", options->explain,
+                 "Tell why each tree costs what it costs, and draw it beside the object, as .svg");
+  CLI::Option* stats = c.add_option("--stats", options->stats, "Write a JSON report to this file, or to stdout (-)");
+  CLI::Option* depfile =
+      c.add_option("--depfile", options->depfile, "Write what each output was made from, for Make or Ninja")
+          ->check(file_name());
+  c.add_option("--jobs", options->jobs, "Meshes to compile at once; one alone uses all threads, and the least memory")
+      ->check(whole_number(1, 256))
+      ->capture_default_str();
+  c.add_option("--threads", options->threads, "Threads to use; 0: all cores")
+      ->check(whole_number(0, 4096))
+      ->capture_default_str();
+  CLI::Option* quiet = c.add_flag("--quiet", options->quiet, "Print nothing but errors and warnings");
+  c.add_flag("--dry-run", options->dry_run, "Only tell what would be built, and why")
+      ->excludes(stats)
+      ->excludes(depfile)
+      ->excludes(explained)
+      ->excludes(quiet);
 }
 
 }  // namespace
 
 Command build_command(CLI::App& app) {
   auto options = std::make_shared<Options>();
-  CLI::App* c = app.add_subcommand("build", "Compile a mesh to an object");
-  c->add_option("input", options->input, "Mesh: " + mesh::supported_formats())->required();
-  c->add_option("-o,--output", options->output, "The .nkd to write")->required()->check(file_name());
-  c->add_option("--bits", options->settings.bits, "Bits of the lattice an axis")
-      ->check(whole_number(kMinLatticeBits, kMaxLatticeBits))
-      ->capture_default_str();
-  c->add_flag("--ambient-from-diffuse", options->settings.ambient_from_diffuse,
-              "Take a material's ambient colour from its diffuse one, whatever the MTL's Ka says");
-  c->add_option("--stats", options->stats, "Write a JSON report to this file, or to stdout (-)");
-  c->add_flag("--explain", options->explain, "Tell why the tree costs what it costs: by depth, leaf and triangle");
-  c->add_option("--plot", options->plot, "Draw that to this file, as SVG")->check(file_name());
-  c->add_option("--threads", options->threads, "Threads to use; 0: all cores")
-      ->check(whole_number(0, 4096))
-      ->capture_default_str();
-  c->add_flag("--quiet", options->quiet, "Print nothing but errors and warnings");
+  CLI::App* c = app.add_subcommand("build", "Compile meshes to objects");
+  c->add_option("inputs", options->inputs, "Meshes: " + mesh::supported_formats())->required();
+  c->add_option("-o,--output", options->output,
+                "The .nkd to write, or a folder for one of each input's name: one that exists, or ends in /")
+      ->required()
+      ->check(file_name());
+  add_object_options(*c, options);
+  add_run_options(*c, options);
   return {c, [options] { return run(*options); }};
 }
 

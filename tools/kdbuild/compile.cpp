@@ -1,15 +1,11 @@
 #include "kdbuild/compile.h"
 
-#include <filesystem>
+#include <algorithm>
 
 #include <fmt/format.h>
 
-#include "common/console.h"
 #include "mesh/normalise.h"
-#include "mesh/read_mesh.h"
 #include "nkd/write.h"
-#include "sys/hash.h"
-#include "sys/mapped_file.h"
 #include "sys/timer.h"
 
 namespace kd::tools {
@@ -50,45 +46,11 @@ struct KeptAttributes {
   }
 };
 
-Result<uint64_t> hash_file(const std::string& path) {
-  auto file = MappedFile::open(path);
-  if (!file) return file.error();
-  return hash_span(file->bytes());
-}
-
 std::span<const uint32_t> flat(std::span<const std::array<uint32_t, 3>> triangles) {
   return {reinterpret_cast<const uint32_t*>(triangles.data()), 3 * triangles.size()};
 }
 
-}  // namespace
-
-std::string settings_text(const CompileSettings& s) {
-  return fmt::format("--bits {}{}", s.bits, s.ambient_from_diffuse ? " --ambient-from-diffuse" : "");
-}
-
-Result<CompileReport> compile(const std::string& input, const std::string& output, const CompileSettings& settings,
-                              const Progress& progress) {
-  CompileReport report;
-  Timer timer;
-  auto mesh = mesh::read_mesh(input, {settings.ambient_from_diffuse});
-  if (!mesh) return mesh.error();
-  auto source_hash = hash_file(input);
-  if (!source_hash) return source_hash.error();
-  report.warnings = mesh->warnings;
-  report.source_triangles = mesh->triangles.size();
-  report.seconds.read = timer.lap();
-  if (!keep_going(progress, 0)) return Error{ErrorClass::interrupted, input, "interrupted"};
-
-  report.clean = mesh::clean(*mesh);
-  report.topology = mesh::topology(*mesh);
-  report.seconds.clean = timer.lap();
-  if (mesh->triangles.empty()) {
-    return Error{ErrorClass::mesh, input,
-                 fmt::format("nothing is left of its {} triangles: {} have a coordinate that is not finite, {} no area",
-                             report.source_triangles, report.clean.non_finite.count, report.clean.degenerate.count)};
-  }
-
-  const mesh::LatticeMesh lattice_mesh = mesh::normalise(*mesh, settings.bits);
+void report_lattice(const mesh::LatticeMesh& lattice_mesh, CompileReport& report) {
   report.lattice = lattice_mesh.lattice;
   report.triangles = lattice_mesh.triangles.size();
   report.vertices = lattice_mesh.vertices.size();
@@ -96,34 +58,70 @@ Result<CompileReport> compile(const std::string& input, const std::string& outpu
   report.collapsed = {lattice_mesh.collapsed_triangles, lattice_mesh.first_collapsed};
   report.max_displacement = lattice_mesh.max_displacement;
   report.rms_displacement = lattice_mesh.rms_displacement;
+}
+
+}  // namespace
+
+Result<void> clean_mesh(mesh::Mesh& mesh, const std::string& where, CompileReport& report) {
+  Timer timer;
+  report.source_triangles = mesh.triangles.size();
+  report.warnings = mesh.warnings;
+  report.clean = mesh::clean(mesh);
+  report.topology = mesh::topology(mesh);
+  report.seconds.clean = timer.lap();
+  if (!mesh.triangles.empty()) return {};
+  return Error{ErrorClass::mesh, where,
+               fmt::format("nothing is left of its {} triangles: {} have a coordinate that is not finite, {} no area",
+                           report.source_triangles, report.clean.non_finite.count, report.clean.degenerate.count)};
+}
+
+Result<AtomicFile> compile(const mesh::Mesh& mesh, const ObjectTarget& target, const build::BuildSettings& settings,
+                           CompileReport& report, const Progress& progress) {
+  Timer timer;
+  const mesh::LatticeMesh lattice_mesh = mesh::normalise(mesh, target.bits, target.box);
+  report_lattice(lattice_mesh, report);
   report.seconds.normalise = timer.lap();
   if (lattice_mesh.triangles.empty()) {
-    return Error{ErrorClass::mesh, input,
-                 fmt::format("every triangle collapses on a lattice of {} bits: use more", settings.bits)};
+    return Error{ErrorClass::mesh, target.where,
+                 fmt::format("every triangle collapses on a lattice of {} bits: use more", target.bits)};
   }
 
   auto tree =
-      build::build_tree(lattice_mesh.lattice, lattice_mesh.vertices, lattice_mesh.triangles, settings.tree, progress);
-  if (!tree) return Error{tree.error().error_class, input, tree.error().what};
+      build::build_tree(lattice_mesh.lattice, lattice_mesh.vertices, lattice_mesh.triangles, settings, progress);
+  if (!tree) return Error{tree.error().error_class, target.where, tree.error().what};
   report.tree = tree_statistics(tree->nodes, lattice_mesh.lattice);
   report.references = tree->references.size();
   report.seconds.build = timer.lap();
 
   const std::vector<uint32_t> vertices = packed_vertices(lattice_mesh);
-  const KeptAttributes attributes(*mesh, lattice_mesh);
-  const nkd::Summary summary{
-      lattice_mesh.lattice,
-      report.max_displacement,
-      report.rms_displacement,
-      report.tree,
-      {std::filesystem::path(input).filename().string(), *source_hash, settings_text(settings), version_text()},
-      mesh->material_names};
-  const auto written = nkd::write_object(
-      output, summary, {tree->nodes, tree->references, flat(lattice_mesh.triangles), vertices}, attributes.view(*mesh));
-  if (!written) return written.error();
+  const KeptAttributes attributes(mesh, lattice_mesh);
+  const nkd::Summary summary{lattice_mesh.lattice, report.max_displacement, report.rms_displacement,
+                             report.tree,          target.provenance,       mesh.material_names};
+  auto file = AtomicFile::create(target.output);
+  if (!file) return file.error();
+  const auto written =
+      nkd::write_object(file->temporary_path(), summary,
+                        {tree->nodes, tree->references, flat(lattice_mesh.triangles), vertices}, attributes.view(mesh));
+  if (!written) return Error{written.error().error_class, target.output, written.error().what};
   report.bytes = *written;
   report.seconds.write = timer.lap();
-  return report;
+  return file;
+}
+
+uint64_t estimated_bytes(const mesh::Mesh& mesh, int bits) {
+  constexpr uint64_t kTreeBytes = 40;  // a triangle: nodes and references
+  constexpr uint64_t kTriangleBytes = 3 * sizeof(uint32_t);
+  std::vector<bool> used(mesh.positions.size());
+  for (const auto& triangle : mesh.triangles) {
+    for (uint32_t v : triangle) used[v] = true;
+  }
+  const auto vertices = static_cast<uint64_t>(std::count(used.begin(), used.end(), true));
+  uint64_t a_triangle = kTreeBytes + kTriangleBytes;
+  if (!mesh.normal_indices.empty()) a_triangle += kTriangleBytes;
+  if (!mesh.material_ids.empty()) a_triangle += sizeof(uint16_t);
+  if (mesh.source_primitives.back() + 1 != mesh.triangles.size()) a_triangle += sizeof(uint32_t);
+  return mesh.triangles.size() * a_triangle + vertices * sizeof(uint32_t) * static_cast<uint64_t>(vertex_words(bits)) +
+         mesh.normals.size() * sizeof(Vec3f) + mesh.materials.size() * sizeof(Material);
 }
 
 }  // namespace kd::tools

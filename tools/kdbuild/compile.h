@@ -1,34 +1,33 @@
-// One mesh to one object: read, clean, normalise, build, write.
+// One mesh in memory to one object: clean, normalise, build, write.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "build/build.h"
 #include "core/tree_statistics.h"
+#include "kdbuild/settings.h"
 #include "mesh/clean.h"
 #include "mesh/topology.h"
+#include "nkd/contents.h"
+#include "sys/atomic_file.h"
 #include "sys/progress.h"
 #include "sys/result.h"
 
 namespace kd::tools {
 
-struct CompileSettings {
-  int bits = kDefaultLatticeBits;
-  bool ambient_from_diffuse = false;
-  build::BuildSettings tree;
-};
-
-/// The settings as flags: what a .nkd records of how it was made.
-std::string settings_text(const CompileSettings& settings);
-
+/// What was done to one mesh, and what came of it.
 struct CompileReport {
+  std::string mesh_name;  // empty: the source's only one
+  std::string output;
+  bool up_to_date = false;  // nothing was done: what the object says of itself, and no more
   uint64_t source_triangles = 0;
   uint64_t triangles = 0;  // in the object
   uint64_t vertices = 0;
   mesh::CleanReport clean;
   mesh::Topology topology;
   Lattice lattice;
+  std::optional<double> max_error;  // what chose the lattice's bits, if anything did
   uint64_t welded_vertices = 0;
   mesh::FaceFault collapsed;
   double max_displacement = 0;  // model units
@@ -42,8 +41,26 @@ struct CompileReport {
   std::vector<std::string> warnings;
 };
 
-/// Errors as those of the steps; ErrorClass::mesh too if cleaning leaves nothing.
-Result<CompileReport> compile(const std::string& input, const std::string& output, const CompileSettings& settings,
-                              const Progress& progress);
+/// Drops what is no surface, and counts it. `where` names the mesh in errors: ErrorClass::mesh if nothing is left.
+Result<void> clean_mesh(mesh::Mesh& mesh, const std::string& where, CompileReport& report);
+
+/// Where an object lies, and what it records of its making.
+struct ObjectTarget {
+  std::string where;  // names the mesh in errors
+  std::string output;
+  Box3d box;  // of the lattice, model space; contains the mesh
+  int bits = kDefaultLatticeBits;
+  nkd::Provenance provenance;
+};
+
+/// Compiles a clean mesh to an object that is whole but does not bear its name yet. Errors as those of the steps;
+/// ErrorClass::mesh too if no triangle is left on the lattice.
+Result<AtomicFile> compile(const mesh::Mesh& mesh, const ObjectTarget& target, const build::BuildSettings& settings,
+                           CompileReport& report, const Progress& progress);
+
+/// About how many bytes the object of a clean mesh will have, for knowing before the tree is built. Exact to a few
+/// kilobytes but for the tree, which is taken for a small one: what this lets through may yet be too large, what it
+/// does not hardly ever fits.
+uint64_t estimated_bytes(const mesh::Mesh& mesh, int bits);
 
 }  // namespace kd::tools

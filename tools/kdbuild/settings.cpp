@@ -16,6 +16,7 @@ std::string settings_text(const CompileSettings& s) {
   add("--traversal-cost", s.tree.costs.traversal, standard.tree.costs.traversal);
   add("--intersection-cost", s.tree.costs.intersection, standard.tree.costs.intersection);
   add("--empty-bonus", s.tree.costs.empty_bonus, standard.tree.costs.empty_bonus);
+  add("--byte-price", s.tree.costs.byte_price, standard.tree.costs.byte_price);
   add("--max-depth", s.tree.max_depth, standard.tree.max_depth);
   return text;
 }

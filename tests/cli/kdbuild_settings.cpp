@@ -1,0 +1,250 @@
+// kdbuild build: the settings that shape objects, and sources that become several.
+#include <filesystem>
+#include <set>
+
+#include <doctest/doctest.h>
+
+#include "cli/json_schema.h"
+#include "cli/meshes.h"
+#include "cli/run_tool.h"
+
+using namespace kd;
+using namespace kd::test;
+
+namespace {
+
+constexpr const char* kTool = "kdbuild";
+
+bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+/// Two materials that share an edge, and one that no face uses.
+const std::string kTwoMaterials =
+    "mtllib m.mtl\nv 0 0 0\nv 3 0 0\nv 3 2 0\nv 0 2 1\nv 6 1 0\n"
+    "usemtl red\nf 1 2 3\nf 1 3 4\nusemtl green\nf 2 5 3\n";
+const std::string kMtl = "newmtl red\nKd 1 0 0\nnewmtl green\nKd 0 1 0\nnewmtl blue\nKd 0 0 1\n";
+
+nlohmann::json info(const Terminal& t, const std::string& object) {
+  return t.report(kTool, {"info", object, "--format", "json"});
+}
+
+}  // namespace
+
+TEST_SUITE("kdbuild build --max-error") {
+  TEST_CASE("picks the fewest bits that keep the error") {
+    const Terminal t;
+    const std::string mesh = data_file("cathedral_pier.obj");
+    std::map<int, double> error_of;
+    for (int bits = 10; bits <= 24; ++bits) {
+      error_of[bits] = t.report(
+          kTool, {"build", mesh, "-o", "x.nkd", "--bits", std::to_string(bits), "--stats", "-"})["error"]["max"];
+    }
+    for (const char* allowed : {"1", "0.01", "0.001", "3e-5", "1e-6"}) {
+      const auto report = t.report(kTool, {"build", mesh, "-o", "x.nkd", "--max-error", allowed, "--stats", "-"});
+      check_report("kdbuild-stats", report);
+      const double limit = std::stod(allowed);
+      int expected = 10;
+      while (error_of[expected] > limit) ++expected;
+      CHECK(report["lattice"]["bits"] == expected);
+      CHECK(report["error"]["max"] == error_of[expected]);
+      CHECK(report["error"]["allowed"] == limit);
+    }
+    const ToolRun text = t.succeeds(kTool, {"build", mesh, "-o", "x.nkd", "--max-error", "0.01"});
+    CHECK_MESSAGE(has(text.out, " bits (the fewest for 0.01), largest displacement"), text.out);
+    CHECK(has(t.succeeds(kTool, {"build", mesh, "-o", "x.nkd", "--max-error", "0.01"}).out, "up to date"));
+    CHECK(has(t.succeeds(kTool, {"info", "x.nkd"}).out, "with --max-error 0.01"));
+  }
+
+  TEST_CASE("says what can be had if it cannot be kept") {
+    const Terminal t;
+    const std::string mesh = data_file("cathedral_pier.obj");
+    t.fails(kTool, {"build", mesh, "-o", "x.nkd", "--max-error", "1e-12"}, ErrorClass::usage,
+            {mesh, "--max-error 1e-12", "24 bits", "e-0"});
+    for (const char* value : {"0", "-1", "nan", "inf", "much"}) {
+      t.fails(kTool, {"build", mesh, "-o", "x.nkd", "--max-error", value}, ErrorClass::usage, {"--max-error"});
+    }
+    t.fails(kTool, {"build", mesh, "-o", "x.nkd", "--max-error", "1", "--bits", "12"}, ErrorClass::usage,
+            {"--max-error", "--bits"});
+  }
+}
+
+TEST_SUITE("kdbuild build, tree settings") {
+  TEST_CASE("change the tree, are recorded, and only if they are not the default") {
+    const Terminal t;
+    const std::string mesh = data_file("icosphere.ply");
+    const auto build = [&](const Arguments& more) {
+      Arguments all{"build", mesh, "-o", "x.nkd", "--stats", "-"};
+      all.insert(all.end(), more.begin(), more.end());
+      return t.report(kTool, all);
+    };
+    const auto standard = build({});
+    const std::string bytes = t.read("x.nkd");
+    CHECK(standard["settings"] == "--bits 21");
+    CHECK(build({"--max-depth", "0", "--traversal-cost", "1", "--intersection-cost", "1.5", "--empty-bonus",
+                 "0.15"})["up_to_date"] == true);
+    for (const Arguments& setting : {Arguments{"--max-depth", "5"}, Arguments{"--traversal-cost", "20"},
+                                     Arguments{"--intersection-cost", "0.2"}, Arguments{"--empty-bonus", "0.8"}}) {
+      const auto report = build(setting);
+      CHECK(report["settings"] == "--bits 21 " + setting[0] + " " + setting[1]);
+      CHECK(report["tree"] != standard["tree"]);
+      t.succeeds(kTool, {"validate", "x.nkd"});
+    }
+    CHECK(build({"--max-depth", "5"})["tree"]["depth"] <= 5);
+    build({});
+    CHECK(t.read("x.nkd") == bytes);
+  }
+
+  TEST_CASE("out of range") {
+    const Terminal t;
+    const auto fails = [&](const char* option, const char* value) {
+      t.fails(kTool, {"build", data_file("cube.obj"), "-o", "x.nkd", option, value}, ErrorClass::usage,
+              {option, value});
+    };
+    fails("--max-depth", "65");
+    fails("--max-depth", "-1");
+    fails("--traversal-cost", "0");
+    fails("--intersection-cost", "-2");
+    fails("--intersection-cost", "nan");
+    fails("--empty-bonus", "1");
+    fails("--split", "halves");
+    fails("--max-object-size", "100");
+    fails("--max-object-size", "9999999999");
+  }
+}
+
+TEST_SUITE("kdbuild build of several meshes") {
+  TEST_CASE("--split material makes a scene of objects on one lattice") {
+    const Terminal t;
+    t.write("two.obj", kTwoMaterials);
+    t.write("m.mtl", kMtl);
+    const Arguments build{"build",    "two.obj", "-o",     "out/",      "--split",
+                          "material", "--stats", "s.json", "--depfile", "d"};
+    const ToolRun run = t.succeeds(kTool, build);
+    CHECK_MESSAGE(has(run.out, "two.obj (red) -> out/two.red.nkd\n  2 triangles"), run.out);
+    CHECK_MESSAGE(has(run.out, "two.obj -> out/two.json: a scene of 2 objects in 2 parts\n"), run.out);
+    CHECK(t.read("d") == "out/two.json: two.obj m.mtl\n");
+    const auto red = info(t, "out/two.red.nkd"), green = info(t, "out/two.green.nkd");
+    CHECK(red["lattice"] == green["lattice"]);
+    CHECK(red["lattice"]["extent"] == nlohmann::json{6.0, 2.0, 1.0});
+    const auto report = nlohmann::json::parse(t.read("s.json"));
+    check_report("kdbuild-stats", report);
+    CHECK(report["objects"][1]["mesh"]["name"] == "green");
+    CHECK(report["scenes"] == nlohmann::json::parse(R"([{"input": "two.obj", "output": "out/two.json"}])"));
+
+    const auto scene = nlohmann::json::parse(t.read("out/two.json"));
+    CHECK(scene["characters"].size() == 1);
+    CHECK(scene["characters"][0]["name"] == "two");
+    CHECK(scene["characters"][0]["parts"].size() == 2);
+    CHECK(scene["lights"].size() == 1);
+    const auto stats = t.run("kdrender", {"out/two.json", "-o", "x.exr", "--device", "cpu"});
+    CHECK_MESSAGE(has(stats.out, "2 objects, 2 instances, 3 triangles as seen"), stats.out << stats.err);
+  }
+
+  TEST_CASE("a scene is up to date if all its objects are, and its owner may edit the rest") {
+    const Terminal t;
+    t.write("two.obj", kTwoMaterials);
+    t.write("m.mtl", kMtl);
+    const Arguments build{"build", "two.obj", "-o", "out/", "--split", "material"};
+    const auto why = [&] {
+      Arguments dry = build;
+      dry.push_back("--dry-run");
+      return t.succeeds(kTool, dry).out;
+    };
+    t.succeeds(kTool, build);
+    CHECK(t.succeeds(kTool, build).out == "two.obj -> out/two.json: up to date\n");
+    const std::string scene = t.read("out/two.json"), green = t.read("out/two.green.nkd");
+    t.write("out/two.json", scene + "\n\n");
+    CHECK(has(why(), "up to date"));
+    t.write("out/two.json", "{");
+    CHECK(has(why(), "the scene cannot be read"));
+    t.write("out/two.json", scene);
+    std::filesystem::remove(t.path("out/two.green.nkd"));
+    CHECK(has(why(), "an output is missing"));
+    t.write("out/two.green.nkd", t.read("out/two.red.nkd"));
+    CHECK(has(why(), "some of its meshes have no object"));
+    t.succeeds(kTool, build);
+    CHECK(t.read("out/two.green.nkd") == green);
+    t.write("m.mtl", kMtl + "\n");
+    CHECK(has(why(), "two.obj -> out/two.json: to build (the source changed)"));
+    t.write("m.mtl", kMtl);
+    CHECK(has(t.succeeds(kTool, {"build", "two.obj", "-o", "out/", "--dry-run"}).out, "settings changed"));
+  }
+
+  TEST_CASE("a mesh of several that is bad fails alone, every time") {
+    const Terminal t;
+    t.write("m.mtl", kMtl);
+    t.write("two.obj", kTwoMaterials + "usemtl blue\nf 1 1 2\n");
+    for (int pass = 0; pass < 2; ++pass) {
+      const ToolRun run = t.run(kTool, {"build", "two.obj", "-o", "out/", "--split", "material", "--stats", "s.json"});
+      CHECK(run.status == static_cast<int>(ErrorClass::mesh));
+      CHECK_MESSAGE(run.err.starts_with("kdbuild: error: two.obj: mesh 'blue': nothing is left of its 1 triangles"),
+                    run.err);
+      const auto report = nlohmann::json::parse(t.read("s.json"));
+      check_report("kdbuild-stats", report);
+      CHECK(report["objects"].size() == 2);
+      CHECK(report["failed"].size() == 1);
+      t.succeeds(kTool, {"validate", "out/two.red.nkd", "out/two.green.nkd"});
+    }
+  }
+
+  TEST_CASE("no object is written over another output or an input") {
+    const Terminal t;
+    t.write("two.obj", kTwoMaterials);
+    t.write("m.mtl", kMtl);
+    t.write("two.red.obj", kTetrahedronObj);
+    const ToolRun run =
+        t.run(kTool, {"build", "two.red.obj", "two.obj", "-o", "out/", "--split", "material", "--quiet"});
+    CHECK(run.status == static_cast<int>(ErrorClass::usage));
+    CHECK_MESSAGE(has(run.err, "out/two.red.nkd: two outputs have this name"), run.err);
+    CHECK(info(t, "out/two.red.nkd")["triangles"] == 4);
+  }
+}
+
+TEST_SUITE("kdbuild build --max-object-size") {
+  TEST_CASE("what is too large for one object becomes several on one lattice, and says so") {
+    const Terminal t;
+    t.write("grid.ply", grid_ply(60));
+    const Arguments build{"build", "grid.ply", "-o", "out/", "--max-object-size", "200000"};
+    const ToolRun run = t.succeeds(kTool, build);
+    CHECK_MESSAGE(has(run.out, "grid.ply is too large for one object of 200000 bytes: split into "), run.out);
+    const auto scene = nlohmann::json::parse(t.read("out/grid.json"));
+    const size_t count = scene["objects"].size();
+    CHECK(count >= 3);
+    CHECK(scene["characters"][0]["parts"].size() == count);
+    size_t triangles = 0;
+    std::set<std::string> lattices;
+    for (size_t i = 0; i < count; ++i) {
+      const std::string file = "out/grid." + std::to_string(i) + ".nkd";
+      CHECK(t.read(file).size() <= 200000);
+      const auto piece = info(t, file);
+      triangles += piece["triangles"].get<size_t>();
+      lattices.insert(piece["lattice"].dump());
+      t.succeeds(kTool, {"validate", file});
+    }
+    CHECK(triangles == 7200);
+    CHECK(lattices.size() == 1);
+    CHECK(!t.exists("out/grid.nkd"));
+    CHECK(t.run("kdrender", {"out/grid.json", "-o", "x.exr", "--device", "cpu"}).status == 0);
+    CHECK(t.succeeds(kTool, build).out == "grid.ply -> out/grid.json: up to date\n");
+    CHECK(has(t.succeeds(kTool, {"build", "grid.ply", "-o", "out/"}).out, "grid.ply -> out/grid.nkd\n"));
+  }
+
+  TEST_CASE("what only turns out to be too large when it is built is split then") {
+    const Terminal t;
+    const std::string mesh = data_file("icosphere.ply");
+    const uint64_t whole = t.report(kTool, {"build", mesh, "-o", "x.nkd", "--stats", "-"})["bytes"]["total"];
+    const std::string limit = std::to_string(whole - 1);
+    const ToolRun run = t.succeeds(kTool, {"build", mesh, "-o", "out/", "--max-object-size", limit});
+    CHECK_MESSAGE(has(run.out, "split into 2 objects"), run.out);
+    CHECK(t.read("out/icosphere.0.nkd").size() + t.read("out/icosphere.1.nkd").size() > whole / 2);
+    CHECK(std::distance(std::filesystem::directory_iterator(t.path("out")), {}) == 3);
+  }
+
+  TEST_CASE("one that fits is one object, whose settings say what it was allowed") {
+    const Terminal t;
+    const auto report = t.report(
+        kTool, {"build", data_file("icosphere.ply"), "-o", "x.nkd", "--max-object-size", "200000", "--stats", "-"});
+    check_report("kdbuild-stats", report);
+    CHECK(report["settings"] == "--bits 21 --max-object-size 200000");
+    CHECK(t.exists("x.nkd"));
+  }
+}
