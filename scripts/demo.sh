@@ -7,13 +7,8 @@ install_missing
 build kdbuild kdrender
 
 say "Compiling the meshes in data/"
-mkdir -p data/compiled out
-for mesh in data/*.obj data/*.ply; do
-  object=data/compiled/$(basename "${mesh%.*}").nkd
-  [ "$object" -nt "$mesh" ] && [ "$object" -nt build/bin/kdbuild ] && continue
-  build/bin/kdbuild build "$mesh" -o "$object" --quiet || die "kdbuild failed on $mesh"
-  printf '  %s\n' "$object"
-done
+mkdir -p out
+build/bin/kdbuild build data/*.obj data/*.ply -o data/compiled/ --quiet || die "kdbuild failed"
 
 say "Rendering data/cathedral.json"
 build/bin/kdrender data/cathedral.json -o out/cathedral.exr --preview out/cathedral.png || die "kdrender failed"
