@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "kdbuild/compile.h"
+#include "core/tree_statistics.h"
+#include "kdbuild/settings.h"
 #include "peak_memory.h"
 
 namespace kd::bench {

@@ -11,7 +11,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "common/console.h"
+#include "kdbuild/build_source.h"
 #include "sys/parallel.h"
 
 namespace kd::bench {
@@ -34,7 +34,7 @@ std::string measure(const std::string& input, const std::string& output, const t
   const uint64_t before = status_bytes("VmRSS");
   try {
     const ThreadLimit limit(threads);
-    const auto report = tools::compile(input, output, settings, tools::progress_bar("", true));
+    const auto report = tools::build_object(input, output, settings);
     if (report) return fmt::format("0\n{} {}\n", before, status_bytes("VmHWM"));
     return fmt::format("{}\n{}\n{}\n", static_cast<int>(report.error().error_class), report.error().where,
                        report.error().what);

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "kdbuild/compile.h"
+#include "kdbuild/settings.h"
 
 namespace kd::bench {
 
@@ -17,7 +17,7 @@ struct PeakMemory {
   uint64_t added() const { return peak - before; }
 };
 
-/// Forks: call it while the process has one thread. Leaves the object at `output`. Errors as tools::compile;
+/// Forks: call it while the process has one thread. Leaves the object at `output`. Errors as tools::build_object;
 /// ErrorClass::resource if the child cannot be had or dies.
 Result<PeakMemory> compile_in_child(const std::string& input, const std::string& output,
                                     const tools::CompileSettings& settings, unsigned threads);

@@ -6,7 +6,7 @@
 
 #include "commands.h"
 #include "common/console.h"
-#include "kdbuild/compile.h"
+#include "kdbuild/build_source.h"
 #include "measure_rays.h"
 #include "scratch_folder.h"
 #include "sweep_settings.h"
@@ -76,7 +76,7 @@ Result<void> sweep(const Options& o) {
     const std::string object_path = scratch->file("object.nkd");
     tools::CompileSettings settings;
     settings.tree = point.settings;
-    auto report = tools::compile(o.mesh, object_path, settings, tools::progress_bar("", true));
+    auto report = tools::build_object(o.mesh, object_path, settings, tools::progress_bar("", true));
     if (!report) return report.error();
     auto object = nkd::ObjectFile::open(object_path);
     if (!object) return object.error();

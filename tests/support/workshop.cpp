@@ -44,10 +44,7 @@ std::string Workshop::compile(const fs::path& mesh, int bits) {
   fs::create_directories(object.parent_path());
   tools::CompileSettings settings;
   settings.bits = bits;
-  const tools::Job job{mesh.string(), object.string()};
-  const auto source = tools::fingerprint(job.input);
-  REQUIRE_MESSAGE(source, (source ? "" : source.error().line()));
-  const auto report = tools::build_source(job, *source, settings, {}, {});
+  const auto report = tools::build_object(mesh.string(), object.string(), settings);
   REQUIRE_MESSAGE(report, (report ? "" : report.error().line()));
   return object.string();
 }

@@ -294,4 +294,15 @@ Result<SourceReport> build_source(const Job& job, const Fingerprint& known, cons
   return SourceBuild(job, settings, neighbours, progress).run(known);
 }
 
+Result<CompileReport> build_object(const std::string& input, const std::string& object, const CompileSettings& settings,
+                                   const Progress& progress) {
+  auto source = fingerprint(input);
+  if (!source) return source.error();
+  auto report = build_source({input, object}, *source, settings, {}, progress);
+  if (!report) return report.error();
+  if (report->objects.size() != 1 || !report->scene.empty())
+    return Error{ErrorClass::mesh, input, "not one mesh but several: compile it with kdbuild"};
+  return std::move(report->objects.front());
+}
+
 }  // namespace kd::tools

@@ -28,4 +28,8 @@ struct SourceReport {
 Result<SourceReport> build_source(const Job& job, const Fingerprint& known, const CompileSettings& settings,
                                   const Neighbours& neighbours, const Progress& progress);
 
+/// The same of a source that is one mesh, to the object of this name. ErrorClass::mesh if it is not.
+Result<CompileReport> build_object(const std::string& input, const std::string& object, const CompileSettings& settings,
+                                   const Progress& progress = {});
+
 }  // namespace kd::tools
