@@ -118,8 +118,8 @@ void print_circumstances(const tools::CompileSettings& settings, const BuildEffo
   fmt::print("{} on {}, {} cores; {}; {}\n", tools::version_text(), machine.processor, machine.cores, machine.compiler,
              embree ? *embree : fmt::format("no Embree column: {}", embree.error().what));
   fmt::print("costs {} : {}, empty bonus {}, byte price {}, depth {}, {} bits; medians of {}; Embree on one thread\n",
-             s.costs.traversal, s.costs.intersection, s.costs.empty_bonus, s.costs.byte_price, s.max_depth, settings.bits,
-             effort.repeats);
+             s.costs.traversal, s.costs.intersection, s.costs.empty_bonus, s.costs.byte_price, s.max_depth,
+             settings.bits, effort.repeats);
 }
 
 void print_builds(std::span<const BuildMeasurement> measurements, const BuildEffort& effort) {

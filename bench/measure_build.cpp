@@ -2,6 +2,7 @@
 
 #include "common/console.h"
 #include "embree_build.h"
+#include "mesh/clean.h"
 #include "mesh/normalise.h"
 #include "mesh/read_mesh.h"
 #include "nkd/object_file.h"
@@ -61,7 +62,7 @@ Result<void> time_loads(const std::string& object_path, int repeats, BuildMeasur
     auto object = nkd::ObjectFile::open(object_path);
     const double open = timer.lap();
     if (!object) return object.error();
-    const auto expanded = render::expand_triangles(object->geometry(), object->summary().lattice.bits);
+    const auto expanded = render::expand_triangles(object->geometry());
     const double expand = timer.lap();
     if (i < 0) continue;
     out.open.push_back(open);

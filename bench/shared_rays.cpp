@@ -82,14 +82,10 @@ class ModelTriangles {
             geometry_.triangle_count())) {}
 
   std::array<Vec3d, 3> corners(int32_t primitive) const {
-    const auto words = static_cast<size_t>(vertex_words(lattice_.bits));
-    const size_t triangle = map_[static_cast<size_t>(primitive)];
-    std::array<Vec3d, 3> c;
-    for (size_t k = 0; k < 3; ++k) {
-      c[k] = lattice_.to_model(
-          unpack_vertex(&geometry_.vertices[geometry_.triangles[3 * triangle + k] * words], lattice_.bits));
-    }
-    return c;
+    const PackedTriangles packed = geometry_.packed();
+    const Vec3u c = packed.corners_of(map_[static_cast<size_t>(primitive)]);
+    return {lattice_.to_model(packed.vertex(c.x)), lattice_.to_model(packed.vertex(c.y)),
+            lattice_.to_model(packed.vertex(c.z))};
   }
 
  private:

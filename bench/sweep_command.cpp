@@ -26,8 +26,8 @@ struct Options {
 };
 
 Table empty_table() {
-  return Table({"costs", "bonus", "price", "depth", "SAH cost", "refs/tri", "nodes/tri", "deepest", ".nkd B/tri", "device B/tri",
-                "build s", "primary", "shadow", "bounce"},
+  return Table({"costs", "bonus", "price", "depth", "SAH cost", "refs/tri", "nodes/tri", "deepest", ".nkd B/tri",
+                "device B/tri", "build s", "primary", "shadow", "bounce"},
                8);
 }
 

@@ -56,30 +56,4 @@ struct Lattice {
   }
 };
 
-/// 32-bit words a packed vertex takes: one up to 10 bits an axis, two up to 21, three above.
-KD_HD KD_INLINE constexpr int vertex_words(int bits) { return bits <= 10 ? 1 : bits <= 21 ? 2 : 3; }
-
-/// A vertex as `vertex_words(bits)` little-endian words: x in the lowest bits, then y, then z; one word each where
-/// they do not fit 64 bits.
-inline void pack_vertex(Vec3u q, int bits, uint32_t* words) {
-  if (vertex_words(bits) == 3) {
-    words[0] = q.x;
-    words[1] = q.y;
-    words[2] = q.z;
-    return;
-  }
-  const uint64_t packed = uint64_t{q.x} | uint64_t{q.y} << bits | uint64_t{q.z} << (2 * bits);
-  words[0] = static_cast<uint32_t>(packed);
-  if (bits > 10) words[1] = static_cast<uint32_t>(packed >> 32);
-}
-
-KD_HD KD_INLINE Vec3u unpack_vertex(const uint32_t* words, int bits) {
-  if (bits > 21) return {words[0], words[1], words[2]};
-  uint64_t packed = words[0];
-  if (bits > 10) packed |= static_cast<uint64_t>(words[1]) << 32;
-  const uint64_t mask = lattice_max(bits);
-  return {static_cast<uint32_t>(packed & mask), static_cast<uint32_t>(packed >> bits & mask),
-          static_cast<uint32_t>(packed >> (2 * bits) & mask)};
-}
-
 }  // namespace kd

@@ -3,8 +3,10 @@
 
 #include <cstdint>
 
+#include "core/lattice.h"
 #include "core/node.h"
 #include "core/triangle.h"
+#include "core/triple.h"
 
 namespace kd {
 
@@ -15,14 +17,26 @@ struct ObjectView {
   int bits = kDefaultLatticeBits;
 };
 
-/// The form traversal wants of a triangle that is stored as three indices to packed vertices.
-KD_HD KD_INLINE TriangleVertices expand_triangle(const uint32_t* vertex_data, const uint32_t* corners, int bits) {
-  const int words = vertex_words(bits);
-  TriangleVertices t;
-  t.a = vec_cast<float>(unpack_vertex(vertex_data + static_cast<uint64_t>(corners[0]) * words, bits));
-  t.b = vec_cast<float>(unpack_vertex(vertex_data + static_cast<uint64_t>(corners[1]) * words, bits));
-  t.c = vec_cast<float>(unpack_vertex(vertex_data + static_cast<uint64_t>(corners[2]) * words, bits));
-  return t;
-}
+/// Triangles as an object stores them: packed triples of indices to packed lattice points.
+struct PackedTriangles {
+  const uint32_t* corners = nullptr;
+  const uint32_t* vertices = nullptr;
+  int corner_bits = 0;
+  int vertex_bits = 0;
+
+  KD_HD KD_INLINE Vec3u corners_of(uint64_t triangle) const {
+    return unpack_triple(corners + triangle * static_cast<uint64_t>(triple_words(corner_bits)), corner_bits);
+  }
+  KD_HD KD_INLINE Vec3u vertex(uint64_t index) const {
+    return unpack_triple(vertices + index * static_cast<uint64_t>(triple_words(vertex_bits)), vertex_bits);
+  }
+  /// The form traversal wants, put where it is wanted: a copy would wait for each of its parts.
+  KD_HD KD_INLINE void expand(uint64_t triangle, TriangleVertices& out) const {
+    const Vec3u c = corners_of(triangle);
+    out.a = vec_cast<float>(vertex(c.x));
+    out.b = vec_cast<float>(vertex(c.y));
+    out.c = vec_cast<float>(vertex(c.z));
+  }
+};
 
 }  // namespace kd

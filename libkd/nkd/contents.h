@@ -1,6 +1,7 @@
 // What a .nkd holds, as plain spans: what a writer is given and what a reader gives.
 #pragma once
 
+#include <bit>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -9,6 +10,7 @@
 #include "core/lattice.h"
 #include "core/material.h"
 #include "core/node.h"
+#include "core/object_view.h"
 #include "core/tree_statistics.h"
 
 namespace kd::nkd {
@@ -26,10 +28,19 @@ struct Provenance {
 struct Geometry {
   std::span<const Node> nodes;
   std::span<const uint32_t> references;
-  std::span<const uint32_t> triangles;  // three indices to vertices each
-  std::span<const uint32_t> vertices;   // vertex_words(bits) words each
+  std::span<const uint32_t> triangles;  // packed triples of corner_bits() bits: indices to vertices
+  std::span<const uint32_t> vertices;   // packed triples of `bits` bits: lattice points
+  int bits = kDefaultLatticeBits;
 
-  size_t triangle_count() const { return triangles.size() / 3; }
+  size_t vertex_count() const { return vertices.size() / static_cast<size_t>(triple_words(bits)); }
+  /// As many as the largest index needs.
+  int corner_bits() const { return corner_bits_for(vertex_count()); }
+  size_t triangle_count() const { return triangles.size() / static_cast<size_t>(triple_words(corner_bits())); }
+  PackedTriangles packed() const { return {triangles.data(), vertices.data(), corner_bits(), bits}; }
+
+  static int corner_bits_for(size_t vertex_count) {
+    return vertex_count < 2 ? 1 : static_cast<int>(std::bit_width(vertex_count - 1));
+  }
 };
 
 /// The sections that only shading or reports read. Empty: the object has none.

@@ -27,7 +27,7 @@ Summary read_summary(const nkd_schema::Object& o) {
 
 Geometry read_geometry(const nkd_schema::Object& o) {
   return {section<Node>(o.nodes()), section<uint32_t>(o.references()), section<uint32_t>(o.triangles()),
-          section<uint32_t>(o.vertices())};
+          section<uint32_t>(o.vertices()), o.bits()};
 }
 
 /// Spans only: no page of the sections is touched.
@@ -70,8 +70,8 @@ Result<ObjectFile> ObjectFile::open(const std::string& path) {
   if (auto f = check_summary(o.summary_)) return unsound(path, *f);
   if (auto f = check_header_checksum(*o.object_)) return unsound(path, *f);
   if (auto f = check_geometry_checksums(*o.object_, o.geometry_)) return unsound(path, *f);
-  if (auto f = check_nodes(o.geometry_, o.summary_.lattice.bits)) return unsound(path, *f);
-  if (auto f = check_indices(o.geometry_, o.summary_.lattice.bits)) return unsound(path, *f);
+  if (auto f = check_nodes(o.geometry_)) return unsound(path, *f);
+  if (auto f = check_indices(o.geometry_)) return unsound(path, *f);
   return o;
 }
 

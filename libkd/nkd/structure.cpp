@@ -82,7 +82,7 @@ Check check_summary(const Summary& s) {
   return std::nullopt;
 }
 
-Check check_nodes(const Geometry& geometry, int bits) {
+Check check_nodes(const Geometry& geometry) {
   const auto nodes = geometry.nodes;
   if (nodes.size() < 2 || nodes.size() > kMaxChild) {
     return found(Issue::node_count, fmt::format("{} nodes", nodes.size()));
@@ -101,7 +101,7 @@ Check check_nodes(const Geometry& geometry, int bits) {
       continue;
     }
     if (depth_of[i] > kMaxDepth) return found(Issue::depth, fmt::format("node {}", i));
-    if (!is_lattice_plane(split_plane(node), bits)) return found(Issue::plane, fmt::format("node {}", i));
+    if (!is_lattice_plane(split_plane(node), geometry.bits)) return found(Issue::plane, fmt::format("node {}", i));
     for (uint32_t side = 0; side < 2; ++side) {
       const uint32_t child = child_of(node, side);
       if (child == kEmptyLeaf) continue;
@@ -113,18 +113,26 @@ Check check_nodes(const Geometry& geometry, int bits) {
   return std::nullopt;
 }
 
-Check check_indices(const Geometry& geometry, int bits) {
-  const size_t words = static_cast<size_t>(vertex_words(bits));
+Check check_indices(const Geometry& geometry) {
+  const auto words = static_cast<size_t>(triple_words(geometry.bits));
   if (geometry.vertices.size() % words != 0) return found(Issue::vertex_size);
+  if (geometry.triangles.size() % static_cast<size_t>(triple_words(geometry.corner_bits())) != 0) {
+    return found(Issue::triangle_size);
+  }
   if (const size_t i = first_at_least(geometry.references, geometry.triangle_count()); i < geometry.references.size()) {
     return found(Issue::reference, fmt::format("reference {}", i));
   }
-  if (const size_t i = first_at_least(geometry.triangles, geometry.vertices.size() / words);
-      i < geometry.triangles.size()) {
-    return found(Issue::corner, fmt::format("triangle {}", i / 3));
+  const PackedTriangles packed = geometry.packed();
+  const auto vertex_count = static_cast<uint32_t>(geometry.vertex_count());
+  for (size_t i = 0; i < geometry.triangle_count(); ++i) {
+    const Vec3u c = packed.corners_of(i);
+    if (c.x >= vertex_count || c.y >= vertex_count || c.z >= vertex_count) {
+      return found(Issue::corner, fmt::format("triangle {}", i));
+    }
   }
   if (words == 3) {
-    if (const size_t i = first_at_least(geometry.vertices, uint64_t{1} << bits); i < geometry.vertices.size()) {
+    if (const size_t i = first_at_least(geometry.vertices, uint64_t{1} << geometry.bits);
+        i < geometry.vertices.size()) {
       return found(Issue::vertex_range, fmt::format("vertex {}", i / 3));
     }
   }

@@ -17,9 +17,9 @@ Check check_container(std::span<const std::byte> bytes);
 /// Bits, box and displacements.
 Check check_summary(const Summary& summary);
 /// That the nodes are one binary tree, at most kMaxDepth deep, with lattice planes and leaves inside the references.
-Check check_nodes(const Geometry& geometry, int bits);
+Check check_nodes(const Geometry& geometry);
 /// That references, corners and vertices are in range.
-Check check_indices(const Geometry& geometry, int bits);
+Check check_indices(const Geometry& geometry);
 Check check_source_primitives(const Attributes& attributes, size_t triangle_count);
 Check check_normals(const Attributes& attributes, size_t triangle_count);
 Check check_materials(const Attributes& attributes, size_t triangle_count);

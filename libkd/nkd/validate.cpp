@@ -46,12 +46,9 @@ class TreeCheck {
 
  private:
   Corners corners(uint32_t triangle) const {
-    const auto words = static_cast<size_t>(vertex_words(lattice_.bits));
-    Corners c;
-    for (size_t k = 0; k < 3; ++k) {
-      c[k] = unpack_vertex(&geometry_.vertices[geometry_.triangles[3 * size_t{triangle} + k] * words], lattice_.bits);
-    }
-    return c;
+    const PackedTriangles packed = geometry_.packed();
+    const Vec3u c = packed.corners_of(triangle);
+    return {packed.vertex(c.x), packed.vertex(c.y), packed.vertex(c.z)};
   }
   std::span<const uint32_t> references(Node leaf) const {
     return geometry_.references.subspan(first_reference(leaf), reference_count(leaf));

@@ -64,7 +64,7 @@ Result<uint64_t> write_object(const std::string& path, const Summary& summary, c
   const auto normals = struct_section<nkd_schema::Float3>(builder, attributes.normals);
   const auto source_primitives = scalar_section(builder, attributes.source_primitives);
   const auto vertices = scalar_section(builder, geometry.vertices, true);
-  const auto triangles = struct_section<nkd_schema::Triangle>(builder, geometry.triangles);
+  const auto triangles = scalar_section(builder, geometry.triangles, true);
   const auto references = scalar_section(builder, geometry.references, true);
   const auto nodes = struct_section<nkd_schema::Node>(builder, geometry.nodes);
 

@@ -23,7 +23,7 @@ const T* data_or_null(std::span<const T> s) {
 
 /// The objects as the stages see them: sections where they are mapped, triangles expanded.
 struct Objects {
-  std::vector<std::vector<TriangleVertices>> triangles;
+  std::vector<HugeArray<TriangleVertices>> triangles;
   std::vector<ShadedObjectView> views;
   uint64_t bytes = 0;
 
@@ -33,7 +33,7 @@ struct Objects {
       const nkd::ObjectFile& file = *scene.objects[i].file;
       const nkd::Attributes& a = scene.objects[i].attributes;
       const int bits = file.summary().lattice.bits;
-      triangles[i] = expand_triangles(file.geometry(), bits);
+      triangles[i] = expand_triangles(file.geometry());
       views[i] = {{file.geometry().nodes.data(), file.geometry().references.data(), triangles[i].data(), bits},
                   file.summary().lattice.step(),
                   data_or_null(a.source_primitives),
@@ -162,7 +162,7 @@ Result<TraceOutcome> cpu_trace(const nkd::ObjectFile& object, const TraceJob& jo
   if (!sources) return sources.error();
   const nkd::Geometry& geometry = object.geometry();
   const Lattice& lattice = object.summary().lattice;
-  const std::vector<TriangleVertices> triangles = expand_triangles(geometry, lattice.bits);
+  const HugeArray<TriangleVertices> triangles = expand_triangles(geometry);
   const TraceView view{{geometry.nodes.data(), geometry.references.data(), triangles.data(), lattice.bits},
                        invert(lattice.frame()),
                        data_or_null(*sources)};

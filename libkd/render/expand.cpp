@@ -10,12 +10,11 @@ constexpr size_t kTriangleGrain = 8192;
 
 }  // namespace
 
-std::vector<TriangleVertices> expand_triangles(const nkd::Geometry& geometry, int bits) {
-  std::vector<TriangleVertices> triangles(geometry.triangle_count());
+HugeArray<TriangleVertices> expand_triangles(const nkd::Geometry& geometry) {
+  const PackedTriangles packed = geometry.packed();
+  HugeArray<TriangleVertices> triangles(geometry.triangle_count());
   parallel_ranges(triangles.size(), kTriangleGrain, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      triangles[i] = expand_triangle(geometry.vertices.data(), geometry.triangles.data() + 3 * i, bits);
-    }
+    for (size_t i = begin; i < end; ++i) packed.expand(i, triangles[i]);
   });
   return triangles;
 }

@@ -150,8 +150,7 @@ TEST_SUITE("kdbuild explain") {
   TEST_CASE("info and build explain alike, and draw the same bytes") {
     const Terminal t;
     const std::string mesh = data_file("icosphere.ply");
-    const std::string built =
-        t.succeeds("kdbuild", {"build", mesh, "-o", "s.nkd", "--quiet", "--explain"}).out;
+    const std::string built = t.succeeds("kdbuild", {"build", mesh, "-o", "s.nkd", "--quiet", "--explain"}).out;
     const std::string told = t.succeeds("kdbuild", {"info", "s.nkd", "--explain", "--plot", "b.svg"}).out;
     CHECK(built.starts_with("s.nkd: 1280 triangles, SAH cost "));
     CHECK(told.ends_with(built));

@@ -12,7 +12,7 @@ namespace {
 /// What kdbuild finds in a surface of so many triangles.
 nlohmann::json stats(const Terminal& t, uint64_t triangles) {
   t.succeeds("kdbench", {"surface", "--triangles", std::to_string(triangles), "-o", "s.ply"});
-  return t.report("kdbuild", {"build", "s.ply", "-o", "s.nkd", "--stats", "-"});
+  return t.report("kdbuild", {"build", "s.ply", "-o", "s.nkd", "--stats", "-", "--force"});
 }
 
 }  // namespace

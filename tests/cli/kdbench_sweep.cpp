@@ -57,7 +57,7 @@ TEST_SUITE("kdbench sweep") {
 
   TEST_CASE("the figures of a tree are those kdbuild gives") {
     const Terminal t;
-    const Rows rows = sweep(t, {"--costs", "1:1.5", "--bonus", "0.08", "--price", "0.15"});
+    const Rows rows = sweep(t, {"--costs", "1:1.5", "--bonus", "0.08", "--price", "0.25"});
     const auto stats = t.report("kdbuild", {"build", data_file("icosphere.ply"), "-o", "s.nkd", "--stats", "-"});
     REQUIRE(rows.size() == 2);
     CHECK(std::stod(rows[1][4]) == doctest::Approx(stats["tree"]["sah_cost"].get<double>()).epsilon(1e-3));

@@ -79,10 +79,11 @@ TEST_SUITE("kdbuild build, tree settings") {
     const auto standard = build({});
     const std::string bytes = t.read("x.nkd");
     CHECK(standard["settings"] == "--bits 21");
-    CHECK(build({"--max-depth", "0", "--traversal-cost", "1", "--intersection-cost", "1.5", "--empty-bonus",
-                 "0.15"})["up_to_date"] == true);
-    for (const Arguments& setting : {Arguments{"--max-depth", "5"}, Arguments{"--traversal-cost", "20"},
-                                     Arguments{"--intersection-cost", "0.2"}, Arguments{"--empty-bonus", "0.8"}}) {
+    CHECK(build({"--max-depth", "64", "--traversal-cost", "1", "--intersection-cost", "1.5", "--empty-bonus", "0.08",
+                 "--byte-price", "0.25"})["up_to_date"] == true);
+    for (const Arguments& setting :
+         {Arguments{"--max-depth", "5"}, Arguments{"--traversal-cost", "20"}, Arguments{"--intersection-cost", "0.2"},
+          Arguments{"--empty-bonus", "0.8"}, Arguments{"--byte-price", "0"}}) {
       const auto report = build(setting);
       CHECK(report["settings"] == "--bits 21 " + setting[0] + " " + setting[1]);
       CHECK(report["tree"] != standard["tree"]);
@@ -203,9 +204,9 @@ TEST_SUITE("kdbuild build --max-object-size") {
   TEST_CASE("what is too large for one object becomes several on one lattice, and says so") {
     const Terminal t;
     t.write("grid.ply", grid_ply(60));
-    const Arguments build{"build", "grid.ply", "-o", "out/", "--max-object-size", "200000"};
+    const Arguments build{"build", "grid.ply", "-o", "out/", "--max-object-size", "120000"};
     const ToolRun run = t.succeeds(kTool, build);
-    CHECK_MESSAGE(has(run.out, "grid.ply is too large for one object of 200000 bytes: split into "), run.out);
+    CHECK_MESSAGE(has(run.out, "grid.ply is too large for one object of 120000 bytes: split into "), run.out);
     const auto scene = nlohmann::json::parse(t.read("out/grid.json"));
     const size_t count = scene["objects"].size();
     CHECK(count >= 3);
@@ -214,7 +215,7 @@ TEST_SUITE("kdbuild build --max-object-size") {
     std::set<std::string> lattices;
     for (size_t i = 0; i < count; ++i) {
       const std::string file = "out/grid." + std::to_string(i) + ".nkd";
-      CHECK(t.read(file).size() <= 200000);
+      CHECK(t.read(file).size() <= 120000);
       const auto piece = info(t, file);
       triangles += piece["triangles"].get<size_t>();
       lattices.insert(piece["lattice"].dump());
@@ -230,21 +231,21 @@ TEST_SUITE("kdbuild build --max-object-size") {
 
   TEST_CASE("what only turns out to be too large when it is built is split then") {
     const Terminal t;
-    const std::string mesh = data_file("icosphere.ply");
-    const uint64_t whole = t.report(kTool, {"build", mesh, "-o", "x.nkd", "--stats", "-"})["bytes"]["total"];
+    t.write("grid.ply", grid_ply(60));
+    const uint64_t whole = t.report(kTool, {"build", "grid.ply", "-o", "x.nkd", "--stats", "-"})["bytes"]["total"];
     const std::string limit = std::to_string(whole - 1);
-    const ToolRun run = t.succeeds(kTool, {"build", mesh, "-o", "out/", "--max-object-size", limit});
+    const ToolRun run = t.succeeds(kTool, {"build", "grid.ply", "-o", "out/", "--max-object-size", limit});
     CHECK_MESSAGE(has(run.out, "split into 2 objects"), run.out);
-    CHECK(t.read("out/icosphere.0.nkd").size() + t.read("out/icosphere.1.nkd").size() > whole / 2);
+    CHECK(t.read("out/grid.0.nkd").size() + t.read("out/grid.1.nkd").size() > whole / 2);
     CHECK(std::distance(std::filesystem::directory_iterator(t.path("out")), {}) == 3);
   }
 
   TEST_CASE("one that fits is one object, whose settings say what it was allowed") {
     const Terminal t;
     const auto report = t.report(
-        kTool, {"build", data_file("icosphere.ply"), "-o", "x.nkd", "--max-object-size", "200000", "--stats", "-"});
+        kTool, {"build", data_file("icosphere.ply"), "-o", "x.nkd", "--max-object-size", "120000", "--stats", "-"});
     check_report("kdbuild-stats", report);
-    CHECK(report["settings"] == "--bits 21 --max-object-size 200000");
+    CHECK(report["settings"] == "--bits 21 --max-object-size 120000");
     CHECK(t.exists("x.nkd"));
   }
 }

@@ -64,11 +64,11 @@ TEST_CASE("lattice: axes without extent") {
 }
 
 TEST_CASE("lattice: packing in one, two and three words") {
-  CHECK(vertex_words(1) == 1);
-  CHECK(vertex_words(10) == 1);
-  CHECK(vertex_words(11) == 2);
-  CHECK(vertex_words(21) == 2);
-  CHECK(vertex_words(22) == 3);
+  CHECK(triple_words(1) == 1);
+  CHECK(triple_words(10) == 1);
+  CHECK(triple_words(11) == 2);
+  CHECK(triple_words(21) == 2);
+  CHECK(triple_words(22) == 3);
   for (int bits = kMinLatticeBits; bits <= kMaxLatticeBits; ++bits) {
     CAPTURE(bits);
     Random random(static_cast<uint64_t>(bits));
@@ -77,13 +77,14 @@ TEST_CASE("lattice: packing in one, two and three words") {
       Vec3u q = random.point(top);
       if (i < 8) q = {i & 1 ? top : 0, i & 2 ? top : 0, i & 4 ? top : 0};
       uint32_t words[4] = {0xabadcafe, 0xabadcafe, 0xabadcafe, 0xabadcafe};
-      pack_vertex(q, bits, words);
-      REQUIRE(unpack_vertex(words, bits) == q);
-      for (int w = vertex_words(bits); w < 4; ++w) REQUIRE(words[w] == 0xabadcafe);
+      pack_triple(q, bits, words);
+      REQUIRE(unpack_triple(words, bits) == q);
+      for (int w = triple_words(bits); w < 4; ++w) REQUIRE(words[w] == 0xabadcafe);
     }
   }
   const uint32_t words[6] = {0, 1, 2, 3, 4, 5}, corners[3] = {1, 0, 1};
-  const TriangleVertices t = expand_triangle(words, corners, 24);
+  TriangleVertices t;
+  PackedTriangles{corners, words, 24, 24}.expand(0, t);
   CHECK(t.a == Vec3f{3, 4, 5});
   CHECK(t.b == Vec3f{0, 1, 2});
   CHECK(t.c == t.a);

@@ -39,15 +39,14 @@ struct Contents {
     build::Tree tree = *build::build_tree(summary.lattice, shape.vertices, shape.triangles, {});
     nodes = std::move(tree.nodes);
     references = std::move(tree.references);
-    for (const auto& t : shape.triangles) triangles.insert(triangles.end(), t.begin(), t.end());
-    const auto words = static_cast<size_t>(vertex_words(bits));
-    vertices.resize(shape.vertices.size() * words);
-    for (size_t i = 0; i < shape.vertices.size(); ++i) pack_vertex(shape.vertices[i], bits, &vertices[i * words]);
+    triangles = pack_triples(shape.triangles, nkd::Geometry::corner_bits_for(shape.vertices.size()));
+    vertices = pack_triples(shape.vertices, bits);
     count_tree();
     if (!attributes) return;
     for (uint32_t i = 0; i < shape.triangles.size(); ++i) source_primitives.push_back(3 * i + 1);
     normals = {{1, 0, 0}, {0, 1, 0}, {0, 0, -1}};
-    for (uint32_t i = 0; i < triangles.size(); ++i) normal_indices.push_back(i % 4 == 3 ? 0xffffffffu : i % 4);
+    for (uint32_t i = 0; i < 3 * shape.triangles.size(); ++i)
+      normal_indices.push_back(i % 4 == 3 ? 0xffffffffu : i % 4);
     materials = {Material{}, Material{{0, 0, 0}, {0.5f, 0, 1}, {1, 1, 1}, 30}};
     summary.material_names = {"first", "second"};
     for (uint32_t i = 0; i < shape.triangles.size(); ++i) material_ids.push_back(static_cast<uint16_t>(i % 2));
@@ -55,8 +54,10 @@ struct Contents {
 
   void count_tree() { summary.tree = tree_statistics(nodes, summary.lattice); }
 
+  nkd::Geometry geometry() const { return {nodes, references, triangles, vertices, summary.lattice.bits}; }
+
   std::string write(const std::string& path) const {
-    const auto written = nkd::write_object(path, summary, {nodes, references, triangles, vertices},
+    const auto written = nkd::write_object(path, summary, geometry(),
                                            {source_primitives, normals, normal_indices, materials, material_ids});
     return written ? path : "";
   }

@@ -14,7 +14,7 @@ void use(const nkd::ObjectFile& file) {
   const int bits = file.summary().lattice.bits;
   std::vector<TriangleVertices> triangles(g.triangle_count());
   for (size_t i = 0; i < triangles.size(); ++i) {
-    triangles[i] = expand_triangle(g.vertices.data(), g.triangles.data() + 3 * i, bits);
+    g.packed().expand(i, triangles[i]);
   }
   const ObjectView view{g.nodes.data(), g.references.data(), triangles.data(), bits};
   Random random(1);

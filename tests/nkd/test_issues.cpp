@@ -60,8 +60,7 @@ std::string misaligned() {
       builder.CreateVectorOfStructs(reinterpret_cast<const nkd_schema::Node*>(c.nodes.data()), c.nodes.size());
   auto references = section(c.references);
   auto vertices = section(c.vertices);
-  const auto triangles = builder.CreateVectorOfStructs(
-      reinterpret_cast<const nkd_schema::Triangle*>(c.triangles.data()), c.triangles.size() / 3);
+  const auto triangles = section(c.triangles);
   // Three vectors of 4-byte elements, one of them shorter by one, cannot all be aligned by chance.
   const std::vector<uint32_t> shorter(c.source_primitives.begin() + 1, c.source_primitives.end());
   const auto sources = section(shorter);
@@ -123,7 +122,7 @@ const std::vector<BadFile>& bad_files() {
       {Issue::displacement, [](Contents& c) { c.summary.rms_displacement = -1e-9; }, {}},
       {Issue::node_count, [](Contents& c) { c.nodes.resize(1); }, {}},
       {Issue::child_index, [](Contents& c) { c.nodes[0] = make_inner(0, 5, 0); }, {}},
-      {Issue::child_index, [](Contents& c) { c.nodes[0] = make_inner(0, 5, 0, kLowerEmpty); }, {}},
+      {Issue::child_index, [](Contents& c) { c.nodes[0] = make_inner(0, 5, 0, kUpperEmpty); }, {}},
       {Issue::child_index,
        [](Contents& c) { c.nodes[0] = make_inner(0, 5, static_cast<uint32_t>(c.nodes.size())); },
        {}},
@@ -143,9 +142,19 @@ const std::vector<BadFile>& bad_files() {
       {Issue::leaf_range, [](Contents& c) { c.nodes[first_node(c, true)] = make_leaf(0, kMaxLeafReferences); }, {}},
       {Issue::reference, [](Contents& c) { c.references.back() = 40; }, {}},
       {Issue::reference, [](Contents& c) { c.references[0] = 0xffffffff; }, {}},
-      {Issue::corner, [](Contents& c) { c.triangles[7] = 120; }, {}},
+      {Issue::corner,
+       [](Contents& c) {
+         pack_triple({0, 120, 1}, 7, &c.triangles[7]);
+       },
+       {}},
       {Issue::corner, [](Contents& c) { c.triangles.back() = 0xffffffff; }, {}},
       {Issue::vertex_size, [](Contents& c) { c.vertices.push_back(0); }, {}},
+      {Issue::triangle_size,
+       [](Contents& c) {
+         c = Contents(soup_shape(kBits, 400, Soup::mixed, 5), kBits);  // two words a triangle
+         c.triangles.push_back(0);
+       },
+       {}},
       {Issue::vertex_range,
        [](Contents& c) {
          c = good(23);

@@ -118,8 +118,7 @@ TEST_CASE("nkd: what cannot be read or written") {
   CHECK(missing.error().error_class == ErrorClass::missing);
   CHECK_FALSE(nkd::ObjectFile::open(folder.file("")));
   const Contents c(box_shape({0, 0, 0}, {1023, 1023, 1023}), 10);
-  const auto unwritten = nkd::write_object(folder.file("no/such/folder.nkd"), c.summary,
-                                           {c.nodes, c.references, c.triangles, c.vertices}, {});
+  const auto unwritten = nkd::write_object(folder.file("no/such/folder.nkd"), c.summary, c.geometry(), {});
   REQUIRE_FALSE(unwritten);
   CHECK(unwritten.error().error_class == ErrorClass::output);
 }

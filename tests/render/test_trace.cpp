@@ -14,7 +14,8 @@ TEST_CASE("trace: vertices expand to what was packed, at every width") {
     const Contents c(shape, bits, false);
     const std::vector<TriangleVertices> expected = expanded(shape);
     for (size_t i = 0; i < expected.size(); ++i) {
-      const TriangleVertices t = expand_triangle(c.vertices.data(), &c.triangles[3 * i], bits);
+      TriangleVertices t;
+      c.geometry().packed().expand(i, t);
       REQUIRE(t.a == expected[i].a);
       REQUIRE(t.b == expected[i].b);
       REQUIRE(t.c == expected[i].c);

@@ -225,9 +225,8 @@ void add_object_options(CLI::App& c, const std::shared_ptr<Options>& options) {
 /// What is done, and what is told of it.
 void add_run_options(CLI::App& c, const std::shared_ptr<Options>& options) {
   c.add_flag("--force", options->force, "Build what is up to date too");
-  CLI::Option* explained =
-      c.add_flag("--explain", options->explain,
-                 "Tell why each tree costs what it costs, and draw it beside the object, as .svg");
+  CLI::Option* explained = c.add_flag("--explain", options->explain,
+                                      "Tell why each tree costs what it costs, and draw it beside the object, as .svg");
   CLI::Option* stats = c.add_option("--stats", options->stats, "Write a JSON report to this file, or to stdout (-)");
   CLI::Option* depfile =
       c.add_option("--depfile", options->depfile, "Write what each output was made from, for Make or Ninja")

@@ -12,15 +12,6 @@ namespace kd::tools {
 
 namespace {
 
-std::vector<uint32_t> packed_vertices(const mesh::LatticeMesh& lattice_mesh) {
-  const auto words = static_cast<size_t>(vertex_words(lattice_mesh.lattice.bits));
-  std::vector<uint32_t> packed(lattice_mesh.vertices.size() * words);
-  for (size_t i = 0; i < lattice_mesh.vertices.size(); ++i) {
-    pack_vertex(lattice_mesh.vertices[i], lattice_mesh.lattice.bits, packed.data() + i * words);
-  }
-  return packed;
-}
-
 /// The mesh's attributes for the triangles that normalising kept. Owns what nkd::Attributes points to.
 struct KeptAttributes {
   std::vector<uint32_t> source_primitives;
@@ -45,10 +36,6 @@ struct KeptAttributes {
     return {source_primitives, mesh.normals, normal_indices, mesh.materials, material_ids};
   }
 };
-
-std::span<const uint32_t> flat(std::span<const std::array<uint32_t, 3>> triangles) {
-  return {reinterpret_cast<const uint32_t*>(triangles.data()), 3 * triangles.size()};
-}
 
 void report_lattice(const mesh::LatticeMesh& lattice_mesh, CompileReport& report) {
   report.lattice = lattice_mesh.lattice;
@@ -93,15 +80,18 @@ Result<AtomicFile> compile(const mesh::Mesh& mesh, const ObjectTarget& target, c
   report.references = tree->references.size();
   report.seconds.build = timer.lap();
 
-  const std::vector<uint32_t> vertices = packed_vertices(lattice_mesh);
+  const int bits = lattice_mesh.lattice.bits,
+            corner_bits = nkd::Geometry::corner_bits_for(lattice_mesh.vertices.size());
+  const std::vector<uint32_t> vertices = pack_triples(lattice_mesh.vertices, bits);
+  const std::vector<uint32_t> triangles = pack_triples(lattice_mesh.triangles, corner_bits);
   const KeptAttributes attributes(mesh, lattice_mesh);
   const nkd::Summary summary{lattice_mesh.lattice, report.max_displacement, report.rms_displacement,
                              report.tree,          target.provenance,       mesh.material_names};
   auto file = AtomicFile::create(target.output);
   if (!file) return file.error();
   const auto written =
-      nkd::write_object(file->temporary_path(), summary,
-                        {tree->nodes, tree->references, flat(lattice_mesh.triangles), vertices}, attributes.view(mesh));
+      nkd::write_object(file->temporary_path(), summary, {tree->nodes, tree->references, triangles, vertices, bits},
+                        attributes.view(mesh));
   if (!written) return Error{written.error().error_class, target.output, written.error().what};
   report.bytes = *written;
   report.seconds.write = timer.lap();
@@ -109,18 +99,19 @@ Result<AtomicFile> compile(const mesh::Mesh& mesh, const ObjectTarget& target, c
 }
 
 uint64_t estimated_bytes(const mesh::Mesh& mesh, int bits) {
-  constexpr uint64_t kTreeBytes = 40;  // a triangle: nodes and references
+  constexpr uint64_t kTreeBytes = 25;  // a triangle: nodes and references
   constexpr uint64_t kTriangleBytes = 3 * sizeof(uint32_t);
   std::vector<bool> used(mesh.positions.size());
   for (const auto& triangle : mesh.triangles) {
     for (uint32_t v : triangle) used[v] = true;
   }
   const auto vertices = static_cast<uint64_t>(std::count(used.begin(), used.end(), true));
-  uint64_t a_triangle = kTreeBytes + kTriangleBytes;
+  const auto corner_words = static_cast<uint64_t>(triple_words(nkd::Geometry::corner_bits_for(vertices)));
+  uint64_t a_triangle = kTreeBytes + sizeof(uint32_t) * corner_words;
   if (!mesh.normal_indices.empty()) a_triangle += kTriangleBytes;
   if (!mesh.material_ids.empty()) a_triangle += sizeof(uint16_t);
   if (mesh.source_primitives.back() + 1 != mesh.triangles.size()) a_triangle += sizeof(uint32_t);
-  return mesh.triangles.size() * a_triangle + vertices * sizeof(uint32_t) * static_cast<uint64_t>(vertex_words(bits)) +
+  return mesh.triangles.size() * a_triangle + vertices * sizeof(uint32_t) * static_cast<uint64_t>(triple_words(bits)) +
          mesh.normals.size() * sizeof(Vec3f) + mesh.materials.size() * sizeof(Material);
 }
 

@@ -48,7 +48,7 @@ CompileReport report_of(const nkd::ObjectFile& file) {
   report.output = file.path();
   report.up_to_date = true;
   report.triangles = g.triangle_count();
-  report.vertices = g.vertices.size() / static_cast<size_t>(vertex_words(s.lattice.bits));
+  report.vertices = g.vertex_count();
   report.lattice = s.lattice;
   report.max_displacement = s.max_displacement;
   report.rms_displacement = s.rms_displacement;

@@ -26,13 +26,12 @@ Json info_json(const nkd::ObjectFile& file) {
   const nkd::Summary& s = file.summary();
   const nkd::Geometry& g = file.geometry();
   const auto vec = [](Vec3d v) { return Json::array({v.x, v.y, v.z}); };
-  const auto words = static_cast<size_t>(vertex_words(s.lattice.bits));
   return {
       {"version", 1},
       {"file", file.path()},
       {"bytes", file.size()},
       {"triangles", g.triangle_count()},
-      {"vertices", g.vertices.size() / words},
+      {"vertices", g.vertex_count()},
       {"lattice", {{"bits", s.lattice.bits}, {"origin", vec(s.lattice.origin)}, {"extent", vec(s.lattice.extent)}}},
       {"error", {{"max", s.max_displacement}, {"rms", s.rms_displacement}}},
       {"tree",
@@ -81,7 +80,7 @@ void print_info(const nkd::ObjectFile& file) {
   line("nodes", g.nodes.size(), g.nodes.size_bytes());
   line("references", g.references.size(), g.references.size_bytes());
   line("triangles", triangles, g.triangles.size_bytes());
-  line("vertices", g.vertices.size() / static_cast<size_t>(vertex_words(s.lattice.bits)), g.vertices.size_bytes());
+  line("vertices", g.vertex_count(), g.vertices.size_bytes());
   fmt::print("  normals: {}; materials: {}\n", file.has_normals() ? "yes" : "none",
              s.material_names.empty() ? "none" : fmt::format("{}", fmt::join(s.material_names, ", ")));
 }

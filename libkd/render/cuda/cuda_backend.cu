@@ -25,10 +25,9 @@ unsigned blocks_for(size_t count) { return static_cast<unsigned>((count + kBlock
     }                                                                 \
   } while (false)
 
-__global__ void expand_kernel(const uint32_t* vertices, const uint32_t* corners, int bits, uint32_t count,
-                              TriangleVertices* triangles) {
+__global__ void expand_kernel(PackedTriangles packed, uint32_t count, TriangleVertices* triangles) {
   const uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
-  if (i < count) triangles[i] = expand_triangle(vertices, corners + 3 * static_cast<uint64_t>(i), bits);
+  if (i < count) packed.expand(i, triangles[i]);
 }
 
 /// Pixel of a thread: a warp covers a tile of 8 x 4 pixels, so that its rays stay together.
@@ -124,7 +123,7 @@ Staging staging_pieces(DeviceMemory& memory, size_t most_vertex_words, size_t mo
   return {memory.piece<uint32_t>(most_vertex_words), memory.piece<uint32_t>(most_corners)};
 }
 
-cudaError_t fill_object(const DeviceObject& object, const Staging& staging, const nkd::Geometry& geometry, int bits,
+cudaError_t fill_object(const DeviceObject& object, const Staging& staging, const nkd::Geometry& geometry,
                         cudaStream_t stream) {
   cudaError_t status = upload(object.nodes, geometry.nodes, stream);
   if (status == cudaSuccess) status = upload(object.references, geometry.references, stream);
@@ -132,8 +131,8 @@ cudaError_t fill_object(const DeviceObject& object, const Staging& staging, cons
   if (status == cudaSuccess) status = upload(staging.corners, geometry.triangles, stream);
   if (status != cudaSuccess) return status;
   const auto count = static_cast<uint32_t>(geometry.triangle_count());
-  expand_kernel<<<blocks_for(count), kBlock, 0, stream>>>(staging.vertices, staging.corners, bits, count,
-                                                          object.triangles);
+  const PackedTriangles packed{staging.corners, staging.vertices, geometry.corner_bits(), geometry.bits};
+  expand_kernel<<<blocks_for(count), kBlock, 0, stream>>>(packed, count, object.triangles);
   return cudaGetLastError();
 }
 
@@ -240,7 +239,7 @@ Result<void> DeviceScene::fill(cudaStream_t stream) {
     const nkd::ObjectFile& file = *scene_.objects[i].file;
     const nkd::Attributes& a = scene_.objects[i].attributes;
     const ShadedObjectView& v = object_views_[i];
-    KD_CUDA_TRY(fill_object(objects_[i], staging_, file.geometry(), v.tree.bits, stream), action);
+    KD_CUDA_TRY(fill_object(objects_[i], staging_, file.geometry(), stream), action);
     KD_CUDA_TRY(upload(const_cast<uint32_t*>(v.source_primitives), a.source_primitives, stream), action);
     KD_CUDA_TRY(upload(const_cast<Vec3f*>(v.normals), a.normals, stream), action);
     KD_CUDA_TRY(upload(const_cast<uint32_t*>(v.normal_indices), a.normal_indices, stream), action);
@@ -389,7 +388,7 @@ Result<TraceOutcome> cuda_trace(const nkd::ObjectFile& object, const TraceJob& j
   lay_out();
   if (auto allocated = memory.allocate(); !allocated) return allocated.error();
   lay_out();
-  KD_CUDA_TRY(fill_object(pieces, staging, geometry, lattice.bits, stream), "uploading the object");
+  KD_CUDA_TRY(fill_object(pieces, staging, geometry, stream), "uploading the object");
   KD_CUDA_TRY(upload(source_primitives, *sources, stream), "uploading the object");
   KD_CUDA_TRY(upload(rays, job.rays, stream), "uploading the rays");
 
