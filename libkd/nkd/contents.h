@@ -18,8 +18,8 @@ namespace kd::nkd {
 constexpr uint32_t kFormatVersion = 2;
 
 struct Provenance {
-  std::string source_name;   // without folders
-  uint64_t source_hash = 0;  // XXH3-64 of the source file's bytes
+  std::string source_name;   // without folders; of several meshes in it, which
+  uint64_t source_hash = 0;  // XXH3-64 of the source file's bytes, or of its and its further files' hashes
   std::string settings;      // as kdbuild flags
   std::string writer;        // program and version
 };

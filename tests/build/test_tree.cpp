@@ -97,6 +97,40 @@ TEST_CASE("tree: splitting pays") {
   CHECK(t.sah_cost < 1.5 * static_cast<double>(s.shape.triangles.size()) / 20);
 }
 
+TEST_CASE("tree: at most the SAH cost of the best builder that was tried, at the same costs") {
+  // Mitsuba 0.6, exact, 1 : 1.5 (docs/benchmarks.md).
+  for (const auto& [name, best] : {std::pair{"sibenik.ply", 71.7}, std::pair{"bunny.ply", 63.5}}) {
+    const auto s = shared_mesh(name, 21);
+    if (!s) {
+      MESSAGE("skipped: no " << name);
+      continue;
+    }
+    build::BuildSettings settings;
+    settings.costs.byte_price = 0.02;
+    const TreeStatistics t = tree_statistics(tree_of(*s, settings).nodes, s->lattice);
+    CHECK(t.sah_cost <= best);
+    CHECK(t.largest_leaf < 28);
+  }
+}
+
+TEST_CASE("tree: what memory costs is saved where leaves are small, and nowhere else") {
+  const Subject s = subject("sphere", sphere_shape(21, 4), 21);
+  size_t bytes = ~size_t{0};
+  double cost = 0;
+  for (const double price : {0.0, 0.02, 0.25, 2.0, 50.0}) {
+    build::BuildSettings settings;
+    settings.costs.byte_price = price;
+    const build::Tree tree = tree_of(s, settings);
+    const TreeStatistics t = tree_statistics(tree.nodes, s.lattice);
+    const size_t size = tree.nodes.size() * sizeof(Node) + tree.references.size() * sizeof(uint32_t);
+    CHECK(size < bytes);
+    CHECK(t.sah_cost > cost);
+    CHECK(t.largest_leaf <= 16);
+    bytes = size;
+    cost = t.sah_cost;
+  }
+}
+
 TEST_CASE("tree: no deeper than asked for") {
   const Subject s = subject("soup", soup_shape(21, 500, Soup::mixed, 6), 21);
   for (const int depth : {1, 2, 7, 20, 28}) {
