@@ -53,11 +53,12 @@ class Builder {
  private:
   Split choose_split(const Cell& cell) const;
   std::pair<Cell, Cell> divide(const Cell& cell, const Split& split) const;
-  void build_small(const Cell& cell, uint32_t slot, Subtree& out) const;
+  void build_small(const Cell& cell, uint32_t slot, Subtree& out);
   void report(double weight);
 
   const Context& context_;
   const Progress& progress_;
+  PerThread<BoxStack> stacks_;
   std::mutex progress_mutex_;
   double done_ = 0;      // guarded by progress_mutex_
   double reported_ = 0;  // guarded by progress_mutex_
@@ -190,8 +191,8 @@ std::pair<Cell, Cell> Builder::divide(const Cell& cell, const Split& split) cons
 }
 
 /// Leaves event lists behind: the boxes they describe are all that small cells need.
-void Builder::build_small(const Cell& cell, uint32_t slot, Subtree& out) const {
-  thread_local BoxStack stack;
+void Builder::build_small(const Cell& cell, uint32_t slot, Subtree& out) {
+  BoxStack& stack = stacks_.local();
   const size_t n = cell.count();
   stack.size = 0;
   stack.reserve(n);
@@ -260,7 +261,8 @@ void Builder::report(double weight) {
 Result<Tree> build_tree(const Lattice& lattice, std::span<const Vec3u> vertices,
                         std::span<const std::array<uint32_t, 3>> triangles, const BuildSettings& settings,
                         const Progress& progress) {
-  Context context{vertices, triangles, lattice.step(), settings.costs, 0, std::min(settings.max_depth, kMaxDepth)};
+  Context context{vertices,       triangles, lattice.proportions(),
+                  settings.costs, 0,         std::min(settings.max_depth, kMaxDepth)};
   context.area_price =
       settings.costs.byte_price * context.half_area_of(lattice.cube()) / static_cast<double>(triangles.size());
   Builder builder(context, progress);

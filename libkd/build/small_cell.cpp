@@ -220,8 +220,8 @@ SmallCellBuilder::Outcome SmallCellBuilder::build(const Box3u& cell, int depth, 
   };
   if (costs.hopeless(count) || depth >= context_.max_depth) return close();
   const Split split = choose_split(context_, costs, cell, stack_, first, n);
-  if (split.cost >= costs.leaf(count) || (count > ExpectedTests::kLinear && !pays(context_, cell, count, split)))
-    return close();
+  if (!split.found() || split.cost >= costs.leaf(count)) return close();
+  if (count > ExpectedTests::kLinear && !pays(context_, cell, count, split)) return close();
 
   Box3u below = cell, above = cell;
   below.hi.set(split.axis, split.plane);

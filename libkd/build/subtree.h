@@ -57,7 +57,7 @@ struct Subtree {
     nodes = {};
     references = {};
     for (Graft& g : grafts) {
-      g.part->flatten_into(out, g.slot == 0 ? slot : g.slot + node_shift);
+      g.part->flatten_into(out, g.slot + node_shift);
       g.part.reset();
     }
   }

@@ -33,6 +33,13 @@ struct Lattice {
     const auto one = [&](double e) { return (e > 0 ? e : usable) / lattice_max(bits); };
     return {one(extent.x), one(extent.y), one(extent.z)};
   }
+  /// Steps as shares of the longest one: for areas, which are only compared, and neither overflow nor vanish like this
+  /// however large or small the model is.
+  Vec3d proportions() const {
+    const double longest = std::max({extent.x, extent.y, extent.z});
+    const auto one = [&](double e) { return e > 0 ? e / longest : 1.0; };
+    return {one(extent.x), one(extent.y), one(extent.z)};
+  }
   /// The object's box in lattice space; flat where the mesh is.
   Box3u cube() const {
     const auto top = [&](double e) { return e > 0 ? lattice_max(bits) : 0u; };

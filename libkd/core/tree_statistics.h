@@ -11,6 +11,9 @@
 
 namespace kd {
 
+/// Of a triangle of a visited leaf, where a visit of an inner node costs 1: what trees are compared by.
+constexpr double kIntersectionCost = 1.5;
+
 struct TreeStatistics {
   /// sum over inner nodes of SA(n)/SA(root) + 1.5 x sum over leaves of references x SA(leaf)/SA(root), areas in model
   /// space, root the mesh's tight box. The figure by which kd-trees are compared.
@@ -52,10 +55,9 @@ void for_each_node(std::span<const Node> nodes, const Lattice& lattice, const Vi
 }
 
 inline TreeStatistics tree_statistics(std::span<const Node> nodes, const Lattice& lattice) {
-  constexpr double kIntersection = 1.5;
   TreeStatistics s;
-  const Vec3d step = lattice.step();
-  const double root_area = half_area(lattice.extent);
+  const Vec3d step = lattice.proportions();
+  const double root_area = half_area(vec_cast<double>(lattice.cube().extent()) * step);
   for_each_node(nodes, lattice, [&](uint32_t, Node node, const Box3u& cell, uint32_t depth) {
     const double share = root_area > 0 ? half_area(vec_cast<double>(cell.extent()) * step) / root_area : 1;
     s.depth = std::max(s.depth, depth);
@@ -64,7 +66,7 @@ inline TreeStatistics tree_statistics(std::span<const Node> nodes, const Lattice
       ++s.leaves;
       s.empty_leaves += count == 0;
       s.largest_leaf = std::max(s.largest_leaf, count);
-      s.sah_cost += kIntersection * count * share;
+      s.sah_cost += kIntersectionCost * count * share;
     } else {
       ++s.inner_nodes;
       s.sah_cost += share;

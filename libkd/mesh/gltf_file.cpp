@@ -234,10 +234,11 @@ Result<Bytes> find_bytes(const Json& buffer, size_t index, const Container& cont
     return failed(path, fmt::format("buffer {} is in {}, but buffers are only read from files beside this one", index,
                                     Json(text.substr(0, 80)).dump(-1, ' ', true, Json::error_handler_t::replace)));
   }
+  if (const auto known = file.mapped.find(*name); known != file.mapped.end()) return known->second.bytes();
   Result<MappedFile> mapped = MappedFile::open((std::filesystem::path(path).parent_path() / *name).string());
   if (!mapped) return mapped.error();
   file.size += mapped->bytes().size();
-  return file.mapped.emplace_back(std::move(*mapped)).bytes();
+  return file.mapped.emplace(*name, std::move(*mapped)).first->second.bytes();
 }
 
 Result<void> open_buffers(const Json& root, const Container& container, const std::string& path, GltfFile& file) {

@@ -2,6 +2,7 @@
 // where they should be and not negative, but nothing says yet that what they count or point to is there.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -17,7 +18,7 @@ struct GltfFile {
   uint64_t size = 0;           // of the file and the buffers outside it, in bytes
   std::vector<std::string> warnings;
 
-  std::vector<MappedFile> mapped;                   // what `buffers` points into, beside the file itself
+  std::map<std::string, MappedFile> mapped;         // what `buffers` points into, beside the file itself, by name
   std::vector<std::vector<unsigned char>> decoded;  // the same, from data: URIs
 };
 

@@ -33,7 +33,7 @@ struct Geometry {
   int bits = kDefaultLatticeBits;
 
   size_t vertex_count() const { return vertices.size() / static_cast<size_t>(triple_words(bits)); }
-  /// As many as the largest index needs.
+  /// As many as (number of vertices - 1) has, at least 1.
   int corner_bits() const { return corner_bits_for(vertex_count()); }
   size_t triangle_count() const { return triangles.size() / static_cast<size_t>(triple_words(corner_bits())); }
   PackedTriangles packed() const { return {triangles.data(), vertices.data(), corner_bits(), bits}; }

@@ -62,7 +62,7 @@ inline constexpr std::array kIssues{
     IssueRow{Issue::box, "the box's origin or extent is not finite, or an extent is negative"},
     IssueRow{Issue::displacement, "a recorded displacement is not finite, or negative"},
     IssueRow{Issue::node_count, "the number of nodes is below 2 or above 2^28"},
-    IssueRow{Issue::child_index, "a child's index is out of range or not above its parent's"},
+    IssueRow{Issue::child_index, "a child's index is out of range or not above its parent's, or both are empty"},
     IssueRow{Issue::shared_child, "two nodes have the same child"},
     IssueRow{Issue::unreached_node, "a node has no parent"},
     IssueRow{Issue::depth, "a path is longer than 64 nodes"},

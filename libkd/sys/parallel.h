@@ -6,6 +6,7 @@
 #include <optional>
 
 #include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
@@ -33,6 +34,10 @@ void parallel_ranges(size_t count, size_t grain, const Body& body) {
   tbb::parallel_for(tbb::blocked_range<size_t>(0, count, grain),
                     [&](const tbb::blocked_range<size_t>& r) { body(r.begin(), r.end()); });
 }
+
+/// One T for each thread that asks for it, by `local()`.
+template <class T>
+using PerThread = tbb::enumerable_thread_specific<T>;
 
 template <class... Tasks>
 void parallel_tasks(const Tasks&... tasks) {

@@ -179,6 +179,18 @@ TEST_CASE("tree: one triangle, a flat mesh, a line of a lattice, nothing") {
   CHECK(tree_of(subject("none", {}, 10)).references.empty());
 }
 
+TEST_CASE("tree: as good for the largest and the smallest models") {
+  Subject s = subject("sphere", sphere_shape(21, 3), 21);
+  s.lattice.extent = {1, 2, 0.5};
+  const build::Tree expected = tree_of(s);
+  const double cost = tree_statistics(expected.nodes, s.lattice).sah_cost;
+  for (const double scale : {0x1p-900, 0x1p-500, 0x1p500, 0x1p900}) {
+    s.lattice.extent = Vec3d{1, 2, 0.5} * scale;
+    CHECK(same(tree_of(s), expected));
+    CHECK(tree_statistics(expected.nodes, s.lattice).sah_cost == cost);
+  }
+}
+
 TEST_CASE("tree: many triangles in one place") {
   Shape pile;
   for (int i = 0; i < 3000; ++i) pile.add_triangle({100, 100, 100}, {200, 100, 100}, {100, 200, 101});

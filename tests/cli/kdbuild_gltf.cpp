@@ -72,4 +72,39 @@ TEST_SUITE("kdbuild build, glTF") {
     t.succeeds("kdbuild", build);
     CHECK(t.read("out/two.tet.nkd") != before);
   }
+
+  TEST_CASE("no scene or part is written over what the run writes elsewhere") {
+    const Terminal t;
+    t.write("tet.bin", tetrahedron_bin(1));
+    t.write("two.gltf", kTwoTetrahedra);
+    t.fails("kdbuild", {"build", "two.gltf", "-o", ".", "--stats", "two.json"}, ErrorClass::usage, {"two.json"});
+    t.fails("kdbuild", {"build", "two.gltf", "-o", ".", "--depfile", "two.json"}, ErrorClass::usage, {"two.json"});
+    // Of these two, each would have the object x.a.b.nkd.
+    const auto with_mesh = [](const std::string& name) {
+      std::string gltf = kTwoTetrahedra;
+      return gltf.replace(gltf.find("\"tet\""), 5, '"' + name + '"');
+    };
+    t.write("x.gltf", with_mesh("a.b"));
+    t.write("x.a.gltf", with_mesh("b"));
+    const ToolRun run = t.run("kdbuild", {"build", "x.gltf", "x.a.gltf", "-o", "out/", "--quiet"});
+    CHECK(run.status == static_cast<int>(ErrorClass::usage));
+    CHECK_MESSAGE(run.err.find("x.a.b.nkd") != std::string::npos, run.err);
+    CHECK(t.exists("out/x.json"));
+    CHECK(!t.exists("out/x.a.json"));
+  }
+
+  TEST_CASE("an object whose attributes are corrupt is not up to date") {
+    const Terminal t;
+    t.write("n.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\n");
+    t.succeeds("kdbuild", {"build", "n.obj", "-o", "n.nkd"});
+    const std::string whole = t.read("n.nkd");
+    const float normal[3] = {0, 0, 1};
+    std::string spoilt = whole;
+    const size_t at = spoilt.find(std::string(reinterpret_cast<const char*>(normal), sizeof normal));
+    REQUIRE(at != std::string::npos);
+    spoilt[at] ^= 1;
+    t.write("n.nkd", spoilt);
+    t.succeeds("kdbuild", {"build", "n.obj", "-o", "n.nkd"});
+    CHECK(t.read("n.nkd") == whole);
+  }
 }

@@ -127,6 +127,7 @@ const std::vector<BadFile>& bad_files() {
        [](Contents& c) { c.nodes[0] = make_inner(0, 5, static_cast<uint32_t>(c.nodes.size())); },
        {}},
       {Issue::child_index, [](Contents& c) { c.nodes[0] = make_inner(0, 5, kMaxChild - 1); }, {}},
+      {Issue::child_index, [](Contents& c) { c.nodes[0] = make_inner(0, 5, 2, kLowerEmpty | kUpperEmpty); }, {}},
       {Issue::empty_leaf, [](Contents& c) { c.nodes[1] = make_inner(0, 5, 4); }, {}},
       {Issue::empty_leaf, [](Contents& c) { c.nodes[1] = make_leaf(0, 1); }, {}},
       {Issue::shared_child,

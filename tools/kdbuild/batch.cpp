@@ -34,7 +34,7 @@ void look_at(Item& item, const BatchSettings& settings) {
 void build(Item& item, const BatchSettings& settings, const Progress& progress) {
   if (item.error || item.up_to_date() || !is_wanted(item)) return;
   try {
-    auto built = build_source(item.job, item.fingerprint, settings.compile, settings.neighbours, progress);
+    auto built = build_source(item.job, item.fingerprint, settings.compile, *settings.claims, progress);
     if (!built) {
       item.error = built.error();
       return;

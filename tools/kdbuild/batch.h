@@ -28,7 +28,7 @@ struct BatchSettings {
   CompileSettings compile;
   bool force = false;
   size_t at_once = 1;
-  Neighbours neighbours;
+  Claims* claims = nullptr;  // while building
 };
 
 /// Looks at each source and at what stands in its place. Sources that cannot be read get their error.

@@ -28,6 +28,10 @@ struct Options {
   bool force = false, dry_run = false, explain = false, quiet = false;
 };
 
+std::string plot_of(const std::string& object) {
+  return std::filesystem::path(object).replace_extension(".svg").string();
+}
+
 /// All files that are read or written, as far as can be known before the sources are read.
 Neighbours neighbours(const std::vector<Item>& items, const Options& options) {
   Neighbours all{{}, {options.stats, options.depfile}};
@@ -35,6 +39,7 @@ Neighbours neighbours(const std::vector<Item>& items, const Options& options) {
     all.inputs.push_back(item.job.input);
     all.inputs.insert(all.inputs.end(), item.fingerprint.files.begin(), item.fingerprint.files.end());
     all.outputs.push_back(item.job.object);
+    if (options.explain) all.outputs.push_back(plot_of(item.job.object));
   }
   return all;
 }
@@ -110,8 +115,7 @@ int tell_plan(const std::vector<Item>& items) {
 /// Explains each object that a source was made into, as text and as an SVG beside it.
 Result<void> explain(const Item& item) {
   for (const CompileReport& object : item.report.objects) {
-    const auto plot = std::filesystem::path(object.output).replace_extension(".svg").string();
-    if (auto explained = explain_file(object.output, true, plot); !explained) return explained;
+    if (auto explained = explain_file(object.output, true, plot_of(object.output)); !explained) return explained;
   }
   return {};
 }
@@ -153,9 +157,10 @@ int run(const Options& options) {
   if (!jobs) return fail(kKdbuild, jobs.error());
   BatchSettings settings{options.settings, options.force, options.jobs, {}};
   std::vector<Item> items = look_at(*jobs, settings);
-  settings.neighbours = neighbours(items, options);
-  if (auto distinct = check_distinct(settings.neighbours.outputs, settings.neighbours.inputs); !distinct)
-    return fail(kKdbuild, distinct.error());
+  const Neighbours known = neighbours(items, options);
+  if (auto distinct = check_distinct(known.outputs, known.inputs); !distinct) return fail(kKdbuild, distinct.error());
+  Claims claims(known);
+  settings.claims = &claims;
   if (options.dry_run) return tell_plan(items);
 
   if (auto usable = prepare_outputs(items, options); !usable) return fail(kKdbuild, usable.error());

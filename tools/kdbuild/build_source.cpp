@@ -37,8 +37,8 @@ struct Staged {
 
 class SourceBuild {
  public:
-  SourceBuild(const Job& job, const CompileSettings& settings, const Neighbours& neighbours, const Progress& progress)
-      : job_(job), settings_(settings), neighbours_(neighbours), progress_(progress) {}
+  SourceBuild(const Job& job, const CompileSettings& settings, Claims& claims, const Progress& progress)
+      : job_(job), settings_(settings), claims_(claims), progress_(progress) {}
 
   Result<SourceReport> run(const Fingerprint& known);
 
@@ -58,7 +58,7 @@ class SourceBuild {
 
   const Job& job_;
   const CompileSettings& settings_;
-  const Neighbours& neighbours_;
+  Claims& claims_;
   const Progress& progress_;
   mesh::Asset asset_;
   bool plain_ = false;
@@ -118,6 +118,7 @@ Result<void> SourceBuild::set_aside(const Error& error) {
 Result<void> SourceBuild::clean() {
   std::vector<Lot> kept;
   for (Lot& lot : lots_) {
+    if (!keep_going(progress_, 0)) return Error{ErrorClass::interrupted, lot.where, "interrupted"};
     if (auto cleaned = clean_mesh(mesh_of(lot), lot.where, lot.report); !cleaned) {
       if (auto go_on = set_aside(cleaned.error()); !go_on) return go_on;
       continue;
@@ -241,12 +242,6 @@ Result<void> SourceBuild::compile_one(Lot& lot, const mesh::Mesh& mesh, CompileR
   std::string name = plain_ ? "" : asset_.meshes[lot.mesh].name;
   if (is_piece) name += (plain_ ? "" : ".") + std::to_string(lot.pieces);
   const std::string path = name.empty() ? job_.object : job_.part(name);
-  if (!name.empty()) {
-    std::vector<std::string> outputs = neighbours_.outputs;
-    for (const Staged& other : staged_) outputs.push_back(other.member.file);
-    outputs.push_back(path);
-    if (auto free = check_distinct(outputs, neighbours_.inputs); !free) return free;
-  }
   std::optional<Share> share;
   if (!name.empty()) share = Share{lot.mesh, asset_.meshes.size(), std::nullopt};
   if (is_piece) share->piece = lot.pieces;
@@ -278,7 +273,9 @@ Result<void> SourceBuild::commit() {
     const scene::Scene scene = asset_scene(asset_, job_.name(), members);
     report_.scene = job_.scene();
     report_.parts = scene.characters.front().parts.size();
-    if (auto free = check_distinct({report_.scene}, neighbours_.inputs); !free) return free;
+    std::vector<std::string> outputs{report_.scene};
+    for (const SceneMember& member : members) outputs.push_back(member.file);
+    if (auto free = claims_.add(outputs); !free) return free;
     if (auto written = scene::write_scene(scene, report_.scene); !written) return written;
   }
   for (Staged& staged : staged_) {
@@ -290,15 +287,16 @@ Result<void> SourceBuild::commit() {
 }  // namespace
 
 Result<SourceReport> build_source(const Job& job, const Fingerprint& known, const CompileSettings& settings,
-                                  const Neighbours& neighbours, const Progress& progress) {
-  return SourceBuild(job, settings, neighbours, progress).run(known);
+                                  Claims& claims, const Progress& progress) {
+  return SourceBuild(job, settings, claims, progress).run(known);
 }
 
 Result<CompileReport> build_object(const std::string& input, const std::string& object, const CompileSettings& settings,
                                    const Progress& progress) {
   auto source = fingerprint(input);
   if (!source) return source.error();
-  auto report = build_source({input, object}, *source, settings, {}, progress);
+  Claims claims({{input}, {}});
+  auto report = build_source({input, object}, *source, settings, claims, progress);
   if (!report) return report.error();
   if (report->objects.size() != 1 || !report->scene.empty())
     return Error{ErrorClass::mesh, input, "not one mesh but several: compile it with kdbuild"};

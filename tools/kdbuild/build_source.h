@@ -26,7 +26,7 @@ struct SourceReport {
 /// objects that are not up to date.
 /// Errors as `read_asset` and `compile`; ErrorClass::usage if no lattice keeps the error that is allowed.
 Result<SourceReport> build_source(const Job& job, const Fingerprint& known, const CompileSettings& settings,
-                                  const Neighbours& neighbours, const Progress& progress);
+                                  Claims& claims, const Progress& progress);
 
 /// The same of a source that is one mesh, to the object of this name. ErrorClass::mesh if it is not.
 Result<CompileReport> build_object(const std::string& input, const std::string& object, const CompileSettings& settings,

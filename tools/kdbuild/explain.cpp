@@ -63,8 +63,8 @@ Explanation explain(std::span<const Node> nodes, std::span<const uint32_t> refer
   Explanation out;
   out.triangles = triangles;
   std::vector<uint32_t> times(triangles);
-  const Vec3d step = lattice.step();
-  const double root_area = half_area(lattice.extent);
+  const Vec3d step = lattice.proportions();
+  const double root_area = half_area(vec_cast<double>(lattice.cube().extent()) * step);
   for_each_node(nodes, lattice, [&](uint32_t, Node node, const Box3u& cell, uint32_t depth) {
     const double visits = root_area > 0 ? half_area(vec_cast<double>(cell.extent()) * step) / root_area : 1;
     if (out.levels.size() <= depth) out.levels.resize(depth + 1);

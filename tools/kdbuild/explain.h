@@ -11,11 +11,9 @@
 
 #include "core/lattice.h"
 #include "core/node.h"
+#include "core/tree_statistics.h"
 
 namespace kd::tools {
-
-/// Of a triangle of a visited leaf, where a visit of an inner node costs 1.
-constexpr double kIntersectionCost = 1.5;
 
 /// What lies at one depth, in inner nodes from the root.
 struct Level {

@@ -99,7 +99,8 @@ class Judge {
       out_.stale = std::move(why);
       return std::nullopt;
     };
-    if (!file) return stale(fs::exists(path) ? "the output is no sound object" : "an output is missing");
+    if (!file || !file->check_attributes().empty())
+      return stale(fs::exists(path) ? "the output is no sound object" : "an output is missing");
     const nkd::Provenance& p = file->summary().provenance;
     const std::optional<Share> share = share_of(p.source_name, expected_.source_name);
     if (!share || p.source_hash != expected_.source_hash) return stale("the source changed");

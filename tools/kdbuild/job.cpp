@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "common/console.h"
+
 namespace kd::tools {
 
 namespace fs = std::filesystem;
@@ -39,6 +41,15 @@ Result<std::vector<Job>> plan_jobs(const std::vector<std::string>& inputs, const
     }
   }
   return jobs;
+}
+
+Result<void> Claims::add(const std::vector<std::string>& outputs) {
+  const std::lock_guard lock(mutex_);
+  std::vector<std::string> all = files_.outputs;
+  all.insert(all.end(), outputs.begin(), outputs.end());
+  if (auto distinct = check_distinct(all, files_.inputs); !distinct) return distinct;
+  files_.outputs = std::move(all);
+  return {};
 }
 
 }  // namespace kd::tools

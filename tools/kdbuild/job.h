@@ -1,7 +1,9 @@
 // What goes in and what comes out: a command line's inputs, and the files that are made of each.
 #pragma once
 
+#include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sys/result.h"
@@ -20,9 +22,23 @@ struct Job {
   std::string name() const;
 };
 
-/// The rest of what a run reads and writes: no object may be written over any of it.
+/// The files that a run reads and writes.
 struct Neighbours {
   std::vector<std::string> inputs, outputs;
+};
+
+/// Who writes what: no source may write over an input or over what another one, or the run itself, writes. Shared by
+/// the sources that are built at once.
+class Claims {
+ public:
+  explicit Claims(Neighbours known) : files_(std::move(known)) {}
+
+  /// Claims outputs whose names only turned out when a source was read. ErrorClass::usage if one is taken.
+  Result<void> add(const std::vector<std::string>& outputs);
+
+ private:
+  std::mutex mutex_;
+  Neighbours files_;
 };
 
 /// Whether `output` names a folder: it ends in / or is one.
