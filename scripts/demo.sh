@@ -19,7 +19,7 @@ The pictures: out/cathedral.png to look at, out/cathedral.exr scene-linear.
 
 What to try next:
   build/bin/kdrender data/spheres.json -o out/spheres.exr --preview out/spheres.png --aov depth,normal
-  build/bin/kdbuild build YOUR_MESH.obj -o data/compiled/mesh.nkd    # OBJ, PLY, STL or OFF
+  build/bin/kdbuild build YOUR_MESH.obj -o data/compiled/mesh.nkd    # OBJ, PLY, STL, OFF or glTF
   build/bin/kdbuild info data/compiled/mesh.nkd
   then place it: copy data/spheres.json, name the object, and render
 END
