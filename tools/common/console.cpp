@@ -99,7 +99,9 @@ class Files {
   /// Where the name leads and, if there is a file, which it is: it may have several names.
   static std::vector<std::string> identities(const std::string& path) {
     std::error_code none;
-    std::vector<std::string> all{std::filesystem::weakly_canonical(path, none).string()};
+    // Of a name without a folder that is not there yet, weakly_canonical would make no whole path.
+    std::vector<std::string> all{
+        std::filesystem::weakly_canonical(std::filesystem::absolute(path, none), none).string()};
     struct stat status {};
     if (::stat(path.c_str(), &status) == 0) all.push_back(fmt::format("{}:{}", status.st_dev, status.st_ino));
     return all;
