@@ -7,7 +7,7 @@
 #include "commands.h"
 #include "common/console.h"
 #include "kdbuild/build_source.h"
-#include "measure_rays.h"
+#include "ray_options.h"
 #include "scratch_folder.h"
 #include "sweep_settings.h"
 #include "sys/atomic_file.h"
@@ -18,11 +18,9 @@ namespace kd::bench {
 
 namespace {
 
-struct Options {
-  std::string mesh, camera, size = "1920x1080", device = "auto", csv;
+struct Options : RayOptions {
+  std::string mesh, camera, size = "1920x1080", csv;
   SweepLists lists;
-  unsigned threads = 0;
-  Effort effort;
 };
 
 Table empty_table() {
@@ -98,32 +96,14 @@ Command sweep_command(CLI::App& app) {
   c->add_option("mesh", o->mesh, "A mesh, as kdbuild reads it")->required();
   c->add_option("--camera", o->camera, "The camera of the shared rays (13 numbers)")->required();
   c->add_option("--size", o->size, "Pixels of the shared rays, WxH")->capture_default_str();
-  c->add_option("--costs", o->lists.costs, "Costs of a traversal step and a triangle test: T:I,T:I,...")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->capture_default_str();
-  c->add_option("--bonus", o->lists.bonuses, "Shares of a split's cost forgiven where it cuts off empty space: B,B,...")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->capture_default_str();
-  c->add_option("--price", o->lists.prices, "SAH costs that a byte a triangle is worth: P,P,...")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->capture_default_str();
-  c->add_option("--depth", o->lists.depths, "Depth limits, in inner nodes: N,N,...")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->capture_default_str();
-  c->add_option("--device", o->device, "auto, cpu, cuda or cuda:N")->capture_default_str();
-  c->add_option("--threads", o->threads, "CPU threads; 0: all cores")
-      ->check(tools::whole_number(0, 4096))
-      ->capture_default_str();
-  c->add_option("--repeat", o->effort.repeats, "Timed runs")
-      ->check(tools::whole_number(1, 100000))
-      ->capture_default_str();
-  c->add_option("--warm-up", o->effort.warm_ups, "Untimed runs before them")
-      ->check(tools::whole_number(0, 1000))
-      ->capture_default_str();
+  const auto add_list = [c](const char* name, std::vector<std::string>& values, const char* what) {
+    c->add_option(name, values, what)->delimiter(',')->allow_extra_args(false)->capture_default_str();
+  };
+  add_list("--costs", o->lists.costs, "Costs of a traversal step and a triangle test: T:I,T:I,...");
+  add_list("--bonus", o->lists.bonuses, "Shares of a split's cost forgiven where it cuts off empty space: B,B,...");
+  add_list("--price", o->lists.prices, "SAH costs that a byte a triangle is worth: P,P,...");
+  add_list("--depth", o->lists.depths, "Depth limits, in inner nodes: N,N,...");
+  add_ray_options(*c, *o);
   c->add_option("--csv", o->csv, "Write the rows to this file too, as CSV");
   return {c, [o] {
             const auto done = sweep(*o);

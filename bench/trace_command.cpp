@@ -10,7 +10,7 @@
 #include "commands.h"
 #include "common/console.h"
 #include "common/report.h"
-#include "measure_rays.h"
+#include "ray_options.h"
 #include "sys/atomic_file.h"
 #include "sys/hash.h"
 #include "sys/parallel.h"
@@ -21,10 +21,8 @@ namespace {
 
 using tools::Json;
 
-struct Options {
-  std::string object, rays, camera, size = "1920x1080", mode = "closest", device = "auto", hits, json;
-  unsigned threads = 0;
-  Effort effort;
+struct Options : RayOptions {
+  std::string object, rays, camera, size = "1920x1080", mode = "closest", hits, json;
 };
 
 Result<std::vector<render::RayRecord>> read_rays(const std::string& path) {
@@ -170,16 +168,7 @@ Command trace_command(CLI::App& app) {
   c->add_option("--mode", o->mode, "closest or any, of a file of rays")
       ->check(CLI::IsMember({"closest", "any"}))
       ->capture_default_str();
-  c->add_option("--device", o->device, "auto, cpu, cuda or cuda:N")->capture_default_str();
-  c->add_option("--threads", o->threads, "CPU threads; 0: all cores")
-      ->check(tools::whole_number(0, 4096))
-      ->capture_default_str();
-  c->add_option("--repeat", o->effort.repeats, "Timed runs")
-      ->check(tools::whole_number(1, 100000))
-      ->capture_default_str();
-  c->add_option("--warm-up", o->effort.warm_ups, "Untimed runs before them")
-      ->check(tools::whole_number(0, 1000))
-      ->capture_default_str();
+  add_ray_options(*c, *o);
   c->add_flag("--count", o->effort.count_steps, "Count nodes, leaves and triangles a ray (CPU)");
   c->add_option("--hits", o->hits, "Write the hits: float t, int32 primitive, float u, v, 16 bytes each");
   c->add_option("--json", o->json, "Write a JSON report to this file, or to stdout (-)");

@@ -1,7 +1,6 @@
 #include "mesh/dependencies.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cstring>
 #include <filesystem>
 
@@ -44,28 +43,6 @@ std::string rest_of_line(std::string_view text, size_t start) {
   return line;
 }
 
-bool has_extension(const std::string& path, std::string_view extension) {
-  const std::string own = std::filesystem::path(path).extension().string();
-  const auto same = [](char a, char b) { return (a >= 'A' && a <= 'Z' ? a - 'A' + 'a' : a) == b; };
-  return std::equal(own.begin(), own.end(), extension.begin(), extension.end(), same);
-}
-
-/// What a URI says with %xx for some characters.
-std::string decoded(std::string_view uri) {
-  std::string text;
-  for (size_t i = 0; i < uri.size(); ++i) {
-    unsigned value = 0;
-    const char* digits = uri.data() + i + 1;
-    if (uri[i] == '%' && i + 2 < uri.size() && std::from_chars(digits, digits + 2, value, 16).ptr == digits + 2) {
-      text += static_cast<char>(value);
-      i += 2;
-    } else {
-      text += uri[i];
-    }
-  }
-  return text;
-}
-
 /// The JSON of a glTF file, which may be the first chunk of a GLB container.
 std::string_view json_of(std::string_view text) {
   constexpr size_t kHeader = 20;
@@ -83,7 +60,7 @@ std::vector<std::string> buffer_files(std::string_view text, const std::string& 
     if (!buffer.is_object() || !buffer.contains("uri") || !buffer["uri"].is_string()) continue;
     const std::string uri = buffer["uri"];
     if (uri.starts_with("data:")) continue;
-    const std::string file = (std::filesystem::path(path).parent_path() / decoded(uri)).string();
+    const std::string file = (std::filesystem::path(path).parent_path() / decoded_uri(uri)).string();
     if (std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);
   }
   return files;
@@ -92,8 +69,9 @@ std::vector<std::string> buffer_files(std::string_view text, const std::string& 
 }  // namespace
 
 std::vector<std::string> dependencies(std::span<const std::byte> bytes, const std::string& path) {
-  if (has_extension(path, ".obj")) return mtl_files(text_of(bytes), path);
-  if (has_extension(path, ".gltf") || has_extension(path, ".glb")) return buffer_files(text_of(bytes), path);
+  const std::string extension = lower_case(std::filesystem::path(path).extension().string());
+  if (extension == ".obj") return mtl_files(text_of(bytes), path);
+  if (extension == ".gltf" || extension == ".glb") return buffer_files(text_of(bytes), path);
   return {};
 }
 

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "mesh/text.h"
+
 namespace kd::mesh {
 namespace {
 
@@ -20,13 +22,6 @@ std::string fit(std::string_view wish) {
   if (name.empty()) name = "mesh";
   if (name[0] == '.' || name[0] == '-') name[0] = '_';
   return name;
-}
-
-std::string lower_case(std::string text) {
-  for (char& c : text) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return text;
 }
 
 }  // namespace

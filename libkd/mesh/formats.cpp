@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "mesh/text.h"
+
 namespace kd::mesh {
 namespace {
 
@@ -16,13 +18,6 @@ constexpr std::array kFormats{
     Format{".gltf", "glTF 2.0", nullptr, read_gltf},
     Format{".glb", "glTF 2.0, binary", nullptr, read_gltf},
 };
-
-std::string lower_case(std::string text) {
-  for (char& c : text) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return text;
-}
 
 }  // namespace
 

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cstring>
 #include <filesystem>
 #include <limits>
@@ -193,17 +192,7 @@ std::string find_fault(const Json& root) {
 
 /// A buffer's URI as a path relative to the glTF file's folder, or nothing if it leads elsewhere.
 std::optional<std::filesystem::path> relative_file(const std::string& uri) {
-  std::string decoded;
-  for (size_t i = 0; i < uri.size(); ++i) {
-    unsigned value = 0;
-    const char* digits = uri.data() + i + 1;
-    if (uri[i] == '%' && i + 2 < uri.size() && std::from_chars(digits, digits + 2, value, 16).ptr == digits + 2) {
-      decoded += static_cast<char>(value);
-      i += 2;
-    } else {
-      decoded += uri[i];
-    }
-  }
+  const std::string decoded = decoded_uri(uri);
   const std::filesystem::path file(decoded);
   const bool is_plain = decoded.find_first_of(std::string_view(":\\\0", 3)) == std::string::npos;
   if (!is_plain || file.empty() || file.is_absolute()) return std::nullopt;

@@ -48,12 +48,6 @@ Result<void> read_binary(Bytes bytes, MeshBuilder& builder) {
   return {};
 }
 
-std::string lower_case(std::string_view word) {
-  std::string lower(word);
-  for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return lower;
-}
-
 /// Keywords count where a line starts, so a solid's name may be any.
 Result<void> read_text(std::string_view text, MeshBuilder& builder, const std::string& path) {
   Tokens tokens(text);

@@ -16,6 +16,31 @@ inline std::string_view text_of(std::span<const std::byte> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
+/// ASCII letters only: what file formats mean by "in any case".
+inline std::string lower_case(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return lower;
+}
+
+/// What a URI says with %xx for some characters.
+inline std::string decoded_uri(std::string_view uri) {
+  std::string decoded;
+  for (size_t i = 0; i < uri.size(); ++i) {
+    unsigned value = 0;
+    const char* digits = uri.data() + i + 1;
+    if (uri[i] == '%' && i + 2 < uri.size() && std::from_chars(digits, digits + 2, value, 16).ptr == digits + 2) {
+      decoded += static_cast<char>(value);
+      i += 2;
+    } else {
+      decoded += uri[i];
+    }
+  }
+  return decoded;
+}
+
 /// The whole of `token` as a number, correctly rounded; "nan" and "inf" are numbers, what exceeds double is infinite.
 inline std::optional<double> parse_number(std::string_view token) {
   if (token.starts_with('+')) token.remove_prefix(1);
