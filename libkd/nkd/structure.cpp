@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "nkd/first_beyond.h"
 #include "nkd/header.h"
 #include "sys/hash.h"
 
@@ -12,33 +13,9 @@ namespace kd::nkd {
 
 namespace {
 
-Finding found(Issue issue, std::string detail = {}) { return {issue, std::move(detail)}; }
-
 template <class Stored>
 bool misaligned(const flatbuffers::Vector<Stored>* v) {
   return v && reinterpret_cast<uintptr_t>(v->Data()) % 16 != 0;
-}
-
-/// The index of the first value >= limit, or the size. Branch-free within blocks, so that the compiler vectorises it.
-template <class T>
-size_t first_at_least(std::span<const T> values, uint64_t limit) {
-  if (limit > std::numeric_limits<T>::max()) return values.size();
-  const T bound = static_cast<T>(limit);
-  constexpr size_t kBlock = 4096;
-  for (size_t begin = 0; begin < values.size(); begin += kBlock) {
-    const size_t end = std::min(begin + kBlock, values.size());
-    bool beyond = false;
-    for (size_t i = begin; i < end; ++i) beyond |= values[i] >= bound;
-    if (!beyond) continue;
-    for (size_t i = begin; i < end; ++i) {
-      if (values[i] >= bound) return i;
-    }
-  }
-  return values.size();
-}
-
-bool is_lattice_plane(float plane, int bits) {
-  return plane >= 0 && plane <= static_cast<float>(lattice_max(bits)) && plane == std::floor(plane);
 }
 
 }  // namespace
@@ -82,65 +59,6 @@ Check check_summary(const Summary& s) {
   return std::nullopt;
 }
 
-Check check_nodes(const Geometry& geometry) {
-  const auto nodes = geometry.nodes;
-  if (nodes.size() < 2 || nodes.size() > kMaxChild) {
-    return found(Issue::node_count, fmt::format("{} nodes", nodes.size()));
-  }
-  if (!is_leaf(nodes[kEmptyLeaf]) || reference_count(nodes[kEmptyLeaf]) != 0) return found(Issue::empty_leaf);
-  // Parents precede children, so one pass from the front knows each node's depth when it comes to it. 0: no parent yet.
-  std::vector<uint8_t> depth_of(nodes.size(), 0);
-  depth_of[0] = 1;
-  for (uint32_t i = 0; i < nodes.size(); ++i) {
-    const Node node = nodes[i];
-    if (depth_of[i] == 0 && i != kEmptyLeaf) return found(Issue::unreached_node, fmt::format("node {}", i));
-    if (is_leaf(node)) {
-      if (uint64_t{first_reference(node)} + reference_count(node) > geometry.references.size()) {
-        return found(Issue::leaf_range, fmt::format("node {}", i));
-      }
-      continue;
-    }
-    if (depth_of[i] > kMaxDepth) return found(Issue::depth, fmt::format("node {}", i));
-    if (!is_lattice_plane(split_plane(node), geometry.bits)) return found(Issue::plane, fmt::format("node {}", i));
-    // The children that are stored, one or two, stand side by side. Taken as a range they need no branch on which they
-    // are, which no processor could foresee: a third less time for all the checks.
-    const uint32_t lower = node.link >> 4, empty = node.link >> 2 & (kLowerEmpty | kUpperEmpty);
-    const uint32_t first = lower + (empty & kLowerEmpty), last = lower + 1 - (empty >> 1);
-    if (first > last || first <= i || last >= nodes.size()) {
-      return found(Issue::child_index, fmt::format("node {}", i));
-    }
-    if ((depth_of[first] | depth_of[last]) != 0) return found(Issue::shared_child, fmt::format("node {}", i));
-    depth_of[first] = depth_of[last] = static_cast<uint8_t>(depth_of[i] + 1);
-  }
-  return std::nullopt;
-}
-
-Check check_indices(const Geometry& geometry) {
-  const auto words = static_cast<size_t>(triple_words(geometry.bits));
-  if (geometry.vertices.size() % words != 0) return found(Issue::vertex_size);
-  if (geometry.triangles.size() % static_cast<size_t>(triple_words(geometry.corner_bits())) != 0) {
-    return found(Issue::triangle_size);
-  }
-  if (const size_t i = first_at_least(geometry.references, geometry.triangle_count()); i < geometry.references.size()) {
-    return found(Issue::reference, fmt::format("reference {}", i));
-  }
-  const PackedTriangles packed = geometry.packed();
-  const auto vertex_count = static_cast<uint32_t>(geometry.vertex_count());
-  for (size_t i = 0; i < geometry.triangle_count(); ++i) {
-    const Vec3u c = packed.corners_of(i);
-    if (c.x >= vertex_count || c.y >= vertex_count || c.z >= vertex_count) {
-      return found(Issue::corner, fmt::format("triangle {}", i));
-    }
-  }
-  if (words == 3) {
-    if (const size_t i = first_at_least(geometry.vertices, uint64_t{1} << geometry.bits);
-        i < geometry.vertices.size()) {
-      return found(Issue::vertex_range, fmt::format("vertex {}", i / 3));
-    }
-  }
-  return std::nullopt;
-}
-
 Check check_source_primitives(const Attributes& a, size_t triangle_count) {
   if (a.source_primitives.empty() || a.source_primitives.size() == triangle_count) return std::nullopt;
   return found(Issue::source_primitives);
@@ -163,7 +81,7 @@ Check check_normals(const Attributes& a, size_t triangle_count) {
 Check check_materials(const Attributes& a, size_t triangle_count) {
   if (a.material_ids.empty()) return std::nullopt;
   if (a.material_ids.size() != triangle_count) return found(Issue::materials);
-  if (const size_t i = first_at_least(a.material_ids, a.materials.size()); i < a.material_ids.size()) {
+  if (const size_t i = first_beyond(a.material_ids, a.materials.size()); i < a.material_ids.size()) {
     return found(Issue::materials, fmt::format("triangle {}", i));
   }
   for (size_t i = 0; i < a.materials.size(); ++i) {

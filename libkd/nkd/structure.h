@@ -3,6 +3,8 @@
 
 #include <optional>
 #include <span>
+#include <string>
+#include <utility>
 
 #include "nkd/contents.h"
 #include "nkd/issues.h"
@@ -11,6 +13,7 @@
 namespace kd::nkd {
 
 using Check = std::optional<Finding>;
+inline Check found(Issue issue, std::string detail = {}) { return Finding{issue, std::move(detail)}; }
 
 /// That the bytes are a .nkd of this version whose offsets stay inside, with the required sections, aligned.
 Check check_container(std::span<const std::byte> bytes);
