@@ -84,8 +84,8 @@ class ModelTriangles {
   std::array<Vec3d, 3> corners(int32_t primitive) const {
     const PackedTriangles packed = geometry_.packed();
     const Vec3u c = packed.corners_of(map_[static_cast<size_t>(primitive)]);
-    return {lattice_.to_model(packed.vertex(c.x)), lattice_.to_model(packed.vertex(c.y)),
-            lattice_.to_model(packed.vertex(c.z))};
+    const auto corner = [&](uint32_t v) { return lattice_.to_model_space(vec_cast<double>(packed.position(v))); };
+    return {corner(c.x), corner(c.y), corner(c.z)};
   }
 
  private:

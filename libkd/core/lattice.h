@@ -50,16 +50,20 @@ struct Lattice {
     const Vec3d s = step();
     return {origin, {s.x, 0, 0}, {0, s.y, 0}, {0, 0, s.z}};
   }
-  Vec3d to_model(Vec3u q) const { return origin + vec_cast<double>(q) * step(); }
+  Vec3d to_model(Vec3u q) const { return to_model_space(vec_cast<double>(q)); }
+  Vec3d to_model_space(Vec3d p_lattice) const { return origin + p_lattice * step(); }
+  /// Unrounded, in lattice steps; clamped to the cube.
+  Vec3d to_lattice_space(Vec3d p_model) const {
+    const Vec3d s = step();
+    const double top = lattice_max(bits);
+    const auto one = [&](double p, double o, double h) { return std::clamp((p - o) / h, 0.0, top); };
+    return {one(p_model.x, origin.x, s.x), one(p_model.y, origin.y, s.y), one(p_model.z, origin.z, s.z)};
+  }
   /// The nearest lattice point, clamped to the cube. Off by at most half a step an axis, plus what double rounding
   /// of the model coordinates themselves costs.
   Vec3u to_lattice(Vec3d p_model) const {
-    const Vec3d s = step();
-    const double top = lattice_max(bits);
-    const auto one = [&](double p, double o, double h) {
-      return static_cast<uint32_t>(std::clamp(std::nearbyint((p - o) / h), 0.0, top));
-    };
-    return {one(p_model.x, origin.x, s.x), one(p_model.y, origin.y, s.y), one(p_model.z, origin.z, s.z)};
+    const Vec3d p = to_lattice_space(p_model);
+    return vec_cast<uint32_t>(Vec3d{std::nearbyint(p.x), std::nearbyint(p.y), std::nearbyint(p.z)});
   }
 };
 

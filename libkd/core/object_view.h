@@ -1,6 +1,7 @@
 // An object as traversal sees it: plain pointers, on the host or on a device.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 #include "core/lattice.h"
@@ -10,32 +11,48 @@
 
 namespace kd {
 
+/// How an object stores its vertices. `float32`: lattice coordinates rounded to float32, not to the lattice, which then
+/// has kMaxLatticeBits; for benchmarks, as nothing that is exact on the lattice is exact for them. The tree is built
+/// over the lattice points nearest to what is stored.
+enum class VertexForm : uint8_t { lattice, float32 };
+
+constexpr const char* name_of(VertexForm form) { return form == VertexForm::float32 ? "float32" : "lattice"; }
+
 struct ObjectView {
   const Node* nodes = nullptr;
   const uint32_t* references = nullptr;         // leaf order -> triangle
-  const TriangleVertices* triangles = nullptr;  // lattice coordinates
+  const TriangleVertices* triangles = nullptr;  // lattice space
   int bits = kDefaultLatticeBits;
 };
 
-/// Triangles as an object stores them: packed triples of indices to packed lattice points.
+/// Triangles as an object stores them: packed triples of indices to packed lattice points, or to three floats each.
 struct PackedTriangles {
   const uint32_t* corners = nullptr;
   const uint32_t* vertices = nullptr;
   int corner_bits = 0;
   int vertex_bits = 0;
+  VertexForm form = VertexForm::lattice;
 
   KD_HD KD_INLINE Vec3u corners_of(uint64_t triangle) const {
     return unpack_triple(corners + triangle * static_cast<uint64_t>(triple_words(corner_bits)), corner_bits);
   }
-  KD_HD KD_INLINE Vec3u vertex(uint64_t index) const {
-    return unpack_triple(vertices + index * static_cast<uint64_t>(triple_words(vertex_bits)), vertex_bits);
+  /// Lattice space.
+  KD_HD KD_INLINE Vec3f position(uint64_t index) const {
+    const Vec3u v = unpack_triple(vertices + index * static_cast<uint64_t>(triple_words(vertex_bits)), vertex_bits);
+    if (form == VertexForm::float32) return {float_from_bits(v.x), float_from_bits(v.y), float_from_bits(v.z)};
+    return vec_cast<float>(v);
+  }
+  /// The lattice point that the tree was built over: the vertex, or the one nearest to it.
+  KD_HD KD_INLINE Vec3u lattice_point(uint64_t index) const {
+    const Vec3f p = position(index);
+    return vec_cast<uint32_t>(Vec3f{std::rint(p.x), std::rint(p.y), std::rint(p.z)});
   }
   /// The form traversal wants, put where it is wanted: a copy would wait for each of its parts.
   KD_HD KD_INLINE void expand(uint64_t triangle, TriangleVertices& out) const {
     const Vec3u c = corners_of(triangle);
-    out.a = vec_cast<float>(vertex(c.x));
-    out.b = vec_cast<float>(vertex(c.y));
-    out.c = vec_cast<float>(vertex(c.z));
+    out.a = position(c.x);
+    out.b = position(c.y);
+    out.c = position(c.z);
   }
 };
 

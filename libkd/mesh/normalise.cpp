@@ -1,6 +1,7 @@
 #include "mesh/normalise.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <unordered_map>
 
@@ -10,6 +11,26 @@ namespace {
 
 double displacement(const Lattice& lattice, Vec3d p_model, Vec3u q) { return length(lattice.to_model(q) - p_model); }
 
+/// A vertex as it is stored, and as the tree sees it.
+struct Corner {
+  Vec3d stored;  // lattice space
+  Vec3u point;
+  Vec3u key;  // equal for vertices that are stored alike
+};
+
+Corner corner_of(const Lattice& lattice, Vec3d p_model, VertexForm form) {
+  if (form == VertexForm::lattice) {
+    const Vec3u point = lattice.to_lattice(p_model);
+    return {vec_cast<double>(point), point, point};
+  }
+  const auto bits = [](float v) { return std::bit_cast<uint32_t>(v); };
+  // Adding 0 turns -0, which a coordinate of -0 in a box from +0 gives, into 0.
+  const Vec3f f = vec_cast<float>(lattice.to_lattice_space(p_model) + Vec3d{0, 0, 0});
+  return {vec_cast<double>(f),
+          vec_cast<uint32_t>(Vec3f{std::rint(f.x), std::rint(f.y), std::rint(f.z)}),
+          {bits(f.x), bits(f.y), bits(f.z)}};
+}
+
 /// Exact: coordinates have 24 bits at most, so a cross product's components have 51.
 bool has_area(Vec3u a, Vec3u b, Vec3u c) {
   const auto p = vec_cast<int64_t>(b) - vec_cast<int64_t>(a);
@@ -17,16 +38,16 @@ bool has_area(Vec3u a, Vec3u b, Vec3u c) {
   return !(cross(p, q) == Vec3<int64_t>{0, 0, 0});
 }
 
-/// Lattice points by first use.
+/// Vertices by first use.
 class VertexTable {
  public:
   explicit VertexTable(size_t expected) { index_of_.reserve(expected); }
 
-  uint32_t index(Vec3u q, std::vector<Vec3u>& vertices) {
-    const Key key{uint64_t{q.x} << 32 | q.y, q.z};
-    const auto [entry, fresh] = index_of_.try_emplace(key, static_cast<uint32_t>(vertices.size()));
-    if (fresh) vertices.push_back(q);
-    return entry->second;
+  /// The index of the vertices that are stored alike, and whether this is the first of them.
+  std::pair<uint32_t, bool> index(Vec3u key) {
+    const auto [entry, fresh] =
+        index_of_.try_emplace({uint64_t{key.x} << 32 | key.y, key.z}, static_cast<uint32_t>(index_of_.size()));
+    return {entry->second, fresh};
   }
 
  private:
@@ -56,7 +77,7 @@ Box3d bounds(const Mesh& mesh) {
 
 LatticeMesh normalise(const Mesh& mesh, int bits) { return normalise(mesh, bits, bounds(mesh)); }
 
-LatticeMesh normalise(const Mesh& mesh, int bits, const Box3d& box_model) {
+LatticeMesh normalise(const Mesh& mesh, int bits, const Box3d& box_model, VertexForm form) {
   LatticeMesh out;
   out.lattice = {box_model.lo, box_model.extent(), bits};
   out.triangles.reserve(mesh.triangles.size());
@@ -64,29 +85,34 @@ LatticeMesh normalise(const Mesh& mesh, int bits, const Box3d& box_model) {
 
   std::vector<uint32_t> new_index(mesh.positions.size(), kNoIndex);
   VertexTable table(mesh.positions.size());
+  const auto moved = [&](const Corner& corner, Vec3d p_model) {
+    const double distance = length(out.lattice.to_model_space(corner.stored) - p_model);
+    out.max_displacement = std::fmax(out.max_displacement, distance);
+    return distance;
+  };
   double sum_of_squares = 0;
   uint64_t used = 0;
   for (uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-    std::array<Vec3u, 3> corners;
-    for (size_t k = 0; k < 3; ++k) corners[k] = out.lattice.to_lattice(mesh.positions[mesh.triangles[i][k]]);
-    if (!has_area(corners[0], corners[1], corners[2])) {
+    std::array<Corner, 3> corners;
+    for (size_t k = 0; k < 3; ++k) corners[k] = corner_of(out.lattice, mesh.positions[mesh.triangles[i][k]], form);
+    if (!has_area(corners[0].point, corners[1].point, corners[2].point)) {
       if (out.collapsed_triangles++ == 0) out.first_collapsed = mesh.source_primitives[i];
-      for (size_t k = 0; k < 3; ++k) {
-        const double moved = displacement(out.lattice, mesh.positions[mesh.triangles[i][k]], corners[k]);
-        out.max_displacement = std::fmax(out.max_displacement, moved);
-      }
+      for (size_t k = 0; k < 3; ++k) moved(corners[k], mesh.positions[mesh.triangles[i][k]]);
       continue;
     }
     std::array<uint32_t, 3> triangle;
     for (size_t k = 0; k < 3; ++k) {
       const uint32_t v = mesh.triangles[i][k];
       if (new_index[v] == kNoIndex) {
-        const size_t before = out.vertices.size();
-        new_index[v] = table.index(corners[k], out.vertices);
-        if (out.vertices.size() == before) ++out.welded_vertices;
-        const double moved = displacement(out.lattice, mesh.positions[v], corners[k]);
-        out.max_displacement = std::fmax(out.max_displacement, moved);
-        sum_of_squares += moved * moved;
+        const auto [index, fresh] = table.index(corners[k].key);
+        new_index[v] = index;
+        if (fresh) {
+          out.vertices.push_back(corners[k].point);
+          if (form == VertexForm::float32) out.float_vertices.push_back(vec_cast<float>(corners[k].stored));
+        }
+        out.welded_vertices += !fresh;
+        const double distance = moved(corners[k], mesh.positions[v]);
+        sum_of_squares += distance * distance;
         ++used;
       }
       triangle[k] = new_index[v];

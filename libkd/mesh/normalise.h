@@ -10,20 +10,22 @@
 
 #include "core/box.h"
 #include "core/lattice.h"
+#include "core/object_view.h"
 #include "mesh/mesh.h"
 
 namespace kd::mesh {
 
 /// A mesh on the lattice: what the tree is built over. Triangles keep the order of the source; vertices stand in order
-/// of first use, each lattice point once.
+/// of first use, each lattice point once, or in the float32 form each triple of floats.
 struct LatticeMesh {
   Lattice lattice;
   std::vector<Vec3u> vertices;                     // lattice space
+  std::vector<Vec3f> float_vertices;               // the float32 form only: what is stored of each; lattice space
   std::vector<std::array<uint32_t, 3>> triangles;  // indices into vertices
   std::vector<uint32_t> kept;                      // per triangle: its number in the mesh that was normalised
   double max_displacement = 0;                     // model units: the largest distance a vertex moved, dropped ones too
   double rms_displacement = 0;                     // model units, over the vertices in use
-  uint64_t welded_vertices = 0;                    // distinct positions that share a lattice point with an earlier one
+  uint64_t welded_vertices = 0;                    // distinct positions that are stored as an earlier one is
   uint64_t collapsed_triangles = 0;     // without area on the lattice: no ray can meet them, so they are dropped
   uint32_t first_collapsed = kNoIndex;  // source primitive of the first of them
 };
@@ -36,7 +38,11 @@ LatticeMesh normalise(const Mesh& mesh, int bits);
 
 /// The same in a given box of model space, in which all of `mesh` lies. Parts of a mesh that are normalised in one box
 /// lie on one lattice: vertices that they share stay shared, so that no seam opens between them.
-LatticeMesh normalise(const Mesh& mesh, int bits, const Box3d& box_model);
+///
+/// In the float32 form, `bits` is kMaxLatticeBits. A vertex is rounded to float32, which is what displacements measure
+/// and welding compares, and from there to the lattice, which is where the tree sees it and triangles collapse: at most
+/// 3/4 of a step from where it was, and not always the point that one rounding would have given.
+LatticeMesh normalise(const Mesh& mesh, int bits, const Box3d& box_model, VertexForm form = VertexForm::lattice);
 
 /// What `normalise` would give as LatticeMesh::max_displacement on `lattice`, at a fraction of the cost. Stops at the
 /// first displacement above `enough` and returns that.

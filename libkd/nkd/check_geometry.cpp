@@ -95,6 +95,14 @@ class FastNodeCheck {
   uint32_t children_ = 0;
 };
 
+/// The bits of floats from 0 on are ordered as they are; those of infinities, NaNs and negative numbers come behind.
+Check check_float_vertices(std::span<const uint32_t> vertices) {
+  constexpr auto kLargest = std::bit_cast<uint32_t>(static_cast<float>(lattice_max(kMaxLatticeBits)));
+  const size_t i = first_beyond(vertices, uint64_t{kLargest} + 1);
+  if (i == vertices.size()) return std::nullopt;
+  return found(Issue::vertex_value, fmt::format("vertex {}", i / 3));
+}
+
 /// The first unsound node, and what is wrong with it.
 Check find_unsound_node(const Geometry& geometry) {
   const auto nodes = geometry.nodes;
@@ -146,6 +154,7 @@ Check check_indices(const Geometry& geometry) {
       i < geometry.triangle_count()) {
     return found(Issue::corner, fmt::format("triangle {}", i));
   }
+  if (geometry.form == VertexForm::float32) return check_float_vertices(geometry.vertices);
   if (const size_t i = first_triple_beyond(geometry.vertices, geometry.bits, uint64_t{1} << geometry.bits);
       i < geometry.vertex_count()) {
     return found(Issue::vertex_range, fmt::format("vertex {}", i));

@@ -34,6 +34,7 @@ uint64_t header_checksum(const nkd_schema::Object& o) {
   Digest digest;
   digest.add(o.version());
   digest.add(o.bits());
+  digest.add(o.vertex_form());
   digest.add(*o.origin());
   digest.add(*o.extent());
   digest.add(o.max_displacement());

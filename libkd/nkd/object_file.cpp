@@ -26,8 +26,12 @@ Summary read_summary(const nkd_schema::Object& o) {
 }
 
 Geometry read_geometry(const nkd_schema::Object& o) {
-  return {section<Node>(o.nodes()), section<uint32_t>(o.references()), section<uint32_t>(o.triangles()),
-          section<uint32_t>(o.vertices()), o.bits()};
+  return {section<Node>(o.nodes()),
+          section<uint32_t>(o.references()),
+          section<uint32_t>(o.triangles()),
+          section<uint32_t>(o.vertices()),
+          o.bits(),
+          static_cast<VertexForm>(o.vertex_form())};
 }
 
 /// Spans only: no page of the sections is touched.
@@ -68,6 +72,7 @@ Result<ObjectFile> ObjectFile::open(const std::string& path) {
   o.summary_ = read_summary(*o.object_);
   o.geometry_ = read_geometry(*o.object_);
   if (auto f = check_summary(o.summary_)) return unsound(path, *f);
+  if (auto f = check_vertex_form(o.geometry_)) return unsound(path, *f);
   if (auto f = check_header_checksum(*o.object_)) return unsound(path, *f);
   if (auto f = check_geometry_checksums(*o.object_, o.geometry_)) return unsound(path, *f);
   if (auto f = check_nodes(o.geometry_)) return unsound(path, *f);

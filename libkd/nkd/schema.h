@@ -5,6 +5,7 @@
 
 #include "core/material.h"
 #include "core/node.h"
+#include "core/object_view.h"
 #include "nkd_generated.h"
 
 namespace kd::nkd {
@@ -13,6 +14,7 @@ static_assert(sizeof(nkd_schema::Node) == sizeof(Node));
 static_assert(sizeof(nkd_schema::Float3) == sizeof(Vec3f));
 static_assert(sizeof(nkd_schema::Material) == sizeof(Material));
 static_assert(sizeof(nkd_schema::Triangle) == 3 * sizeof(uint32_t));
+static_assert(static_cast<int>(nkd_schema::VertexForm::float32) == static_cast<int>(VertexForm::float32));
 
 /// A vector of schema elements as the span of core's type that has the same bytes.
 template <class To, class Stored>

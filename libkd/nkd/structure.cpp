@@ -1,5 +1,6 @@
 #include "nkd/structure.h"
 
+#include <bit>
 #include <cmath>
 #include <vector>
 
@@ -57,6 +58,13 @@ Check check_summary(const Summary& s) {
   const auto sound = [](double d) { return std::isfinite(d) && d >= 0; };
   if (!sound(s.max_displacement) || !sound(s.rms_displacement)) return found(Issue::displacement);
   return std::nullopt;
+}
+
+Check check_vertex_form(const Geometry& geometry) {
+  const bool sound = geometry.form == VertexForm::lattice ||
+                     (geometry.form == VertexForm::float32 && geometry.bits == kMaxLatticeBits);
+  if (sound) return std::nullopt;
+  return found(Issue::vertex_form, fmt::format("form {}, {} bits", static_cast<int>(geometry.form), geometry.bits));
 }
 
 Check check_source_primitives(const Attributes& a, size_t triangle_count) {

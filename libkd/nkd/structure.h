@@ -19,6 +19,8 @@ inline Check found(Issue issue, std::string detail = {}) { return Finding{issue,
 Check check_container(std::span<const std::byte> bytes);
 /// Bits, box and displacements.
 Check check_summary(const Summary& summary);
+/// That the form is known, and the lattice one that it may have.
+Check check_vertex_form(const Geometry& geometry);
 /// That the nodes are one binary tree, at most kMaxDepth deep, with lattice planes and leaves inside the references.
 Check check_nodes(const Geometry& geometry);
 /// That references, corners and vertices are in range.

@@ -48,7 +48,7 @@ class TreeCheck {
   Corners corners(uint32_t triangle) const {
     const PackedTriangles packed = geometry_.packed();
     const Vec3u c = packed.corners_of(triangle);
-    return {packed.vertex(c.x), packed.vertex(c.y), packed.vertex(c.z)};
+    return {packed.lattice_point(c.x), packed.lattice_point(c.y), packed.lattice_point(c.z)};
   }
   std::span<const uint32_t> references(Node leaf) const {
     return geometry_.references.subspan(first_reference(leaf), reference_count(leaf));

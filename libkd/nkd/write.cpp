@@ -83,6 +83,7 @@ Result<uint64_t> write_object(const std::string& path, const Summary& summary, c
   nkd_schema::ObjectBuilder object(builder);
   object.add_version(kFormatVersion);
   object.add_bits(static_cast<uint8_t>(summary.lattice.bits));
+  object.add_vertex_form(static_cast<nkd_schema::VertexForm>(geometry.form));
   object.add_origin(&origin);
   object.add_extent(&extent);
   object.add_max_displacement(summary.max_displacement);

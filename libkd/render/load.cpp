@@ -111,6 +111,11 @@ Result<LoadedScene> load_scene(const scene::Scene& scene, const RenderSettings& 
     }
     auto file = nkd::ObjectFile::open(scene.objects[i].file);
     if (!file) return file.error();
+    if (file->geometry().form != VertexForm::lattice) {
+      return Error{ErrorClass::object, scene.objects[i].file,
+                   "its vertices are float32, for benchmarks only, and rendering is exact on the lattice: compile it "
+                   "without --vertices float32"};
+    }
     lattices[i] = file->summary().lattice;
     loaded.objects[i].file = std::move(*file);
     Needs own = needs;

@@ -54,7 +54,7 @@ struct LoadedScene {
 };
 
 /// Opens the objects that parts place, validates what will be read, and places the instances. Errors as
-/// ObjectFile::open and scene::place_instances.
+/// ObjectFile::open and scene::place_instances; ErrorClass::object too for an object whose vertices are float32.
 Result<LoadedScene> load_scene(const scene::Scene& scene, const RenderSettings& settings);
 
 /// The parts of a SceneView that are the same on every device.

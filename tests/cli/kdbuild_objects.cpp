@@ -167,8 +167,8 @@ TEST_SUITE("kdbuild info and validate") {
     const size_t root = load(0, uint32_t{});
     const size_t vtable = root - static_cast<size_t>(load(root, int32_t{}));
     const size_t version = root + load(vtable + 4, uint16_t{});
-    REQUIRE(load(version, uint32_t{}) == 2);
-    object[version] = 3;
+    REQUIRE(load(version, uint32_t{}) == 3);
+    object[version] = 4;
     t.write("q.nkd", object);
     t.fails(kTool, {"info", "q.nkd"}, ErrorClass::object, {"q.nkd", "NKD102", "version"});
     t.fails(kTool, {"validate", "q.nkd"}, ErrorClass::object, {"q.nkd", "NKD102"});
@@ -221,7 +221,7 @@ TEST_SUITE("kdbuild info and validate") {
                                    (source_root() / "schema" / "nkd.fbs").string() + " -- " + t.path("full.nkd"));
     if (!printed) return;
     const auto object = nlohmann::json::parse(t.read("full.json"));
-    CHECK(object["version"] == 2);
+    CHECK(object["version"] == 3);
     CHECK(object["bits"] == 21);
     CHECK(object["triangles"].size() == 4);
     CHECK(object["material_names"] == nlohmann::json{"red", "blue"});

@@ -67,6 +67,69 @@ TEST_SUITE("kdbuild build --max-error") {
   }
 }
 
+TEST_SUITE("kdbuild build --vertices") {
+  TEST_CASE("float32 stores 12 bytes a vertex over the same triangles, and says so everywhere") {
+    const Terminal t;
+    const std::string mesh = data_file("icosphere.ply");
+    const auto lattice = t.report(kTool, {"build", mesh, "-o", "l.nkd", "--bits", "24", "--stats", "-"});
+    const auto report = t.report(kTool, {"build", mesh, "-o", "f.nkd", "--vertices", "float32", "--stats", "-"});
+    check_report("kdbuild-stats", report);
+    CHECK(report["settings"] == "--bits 24 --vertices float32");
+    CHECK(report["lattice"] == lattice["lattice"]);
+    CHECK(report["mesh"] == lattice["mesh"]);
+    // Rounded twice, a coordinate may come to lie a step beside the one that is rounded once.
+    CHECK(report["tree"]["sah_cost"].get<double>() ==
+          doctest::Approx(lattice["tree"]["sah_cost"].get<double>()).epsilon(1e-6));
+    CHECK(report["error"]["max"] > 0);
+    CHECK(report["error"]["max"] <= lattice["error"]["max"]);
+    CHECK(report["error"]["rms"] < lattice["error"]["rms"]);
+    const auto found = info(t, "f.nkd");
+    CHECK(found["vertex_form"] == "float32");
+    CHECK(found["sections"]["vertices"] == 12 * 642);
+    CHECK(info(t, "l.nkd")["vertex_form"] == "lattice");
+    CHECK(has(t.succeeds(kTool, {"info", "f.nkd"}).out, "24 bits an axis; vertices in float32"));
+    CHECK_FALSE(has(t.succeeds(kTool, {"info", "l.nkd"}).out, "float32"));
+    CHECK(has(t.succeeds(kTool, {"build", mesh, "-o", "g.nkd", "--vertices", "float32", "--bits", "24"}).out,
+              "lattice: 24 bits, vertices in float32, largest displacement"));
+    CHECK(t.read("g.nkd") == t.read("f.nkd"));
+    const std::string sound = t.succeeds(kTool, {"validate", "f.nkd"}).out;
+    CHECK_MESSAGE(sound.starts_with("f.nkd: sound (vertices in float32: "), sound);
+    const auto verdict = t.report(kTool, {"validate", "f.nkd", "l.nkd", "--format", "json"});
+    CHECK(verdict["files"][0]["vertex_form"] == "float32");
+    CHECK(verdict["files"][1]["vertex_form"] == "lattice");
+  }
+
+  TEST_CASE("changing it builds anew") {
+    const Terminal t;
+    const std::string mesh = data_file("cube.obj");
+    const auto build = [&](const Arguments& more) {
+      Arguments all{"build", mesh, "-o", "x.nkd"};
+      all.insert(all.end(), more.begin(), more.end());
+      return t.succeeds(kTool, all).out;
+    };
+    build({"--bits", "24"});
+    CHECK(has(build({"--bits", "24", "--vertices", "lattice"}), "up to date"));
+    CHECK_FALSE(has(build({"--vertices", "float32"}), "up to date"));
+    CHECK(has(build({"--vertices", "float32"}), "up to date"));
+    CHECK(has(build({"--bits", "24", "--dry-run"}), "the settings changed: they were --bits 24 --vertices float32"));
+    CHECK_FALSE(has(build({"--bits", "24"}), "up to date"));
+  }
+
+  TEST_CASE("float32 with another lattice, and what is no form") {
+    const Terminal t;
+    const std::string mesh = data_file("cube.obj");
+    const auto fails = [&](const Arguments& more, const std::vector<std::string>& fragments) {
+      Arguments all{"build", mesh, "-o", "x.nkd", "--vertices"};
+      all.insert(all.end(), more.begin(), more.end());
+      t.fails(kTool, all, ErrorClass::usage, fragments);
+    };
+    fails({"float32", "--bits", "21"}, {"--vertices float32", "--bits 21", "24"});
+    fails({"float32", "--max-error", "1"}, {"--vertices float32", "--max-error"});
+    fails({"float64"}, {"--vertices", "float64"});
+    t.succeeds(kTool, {"build", mesh, "-o", "x.nkd", "--vertices", "lattice", "--max-error", "1"});
+  }
+}
+
 TEST_SUITE("kdbuild build, tree settings") {
   TEST_CASE("change the tree, are recorded, and only if they are not the default") {
     const Terminal t;

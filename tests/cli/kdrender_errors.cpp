@@ -57,6 +57,12 @@ TEST_SUITE("kdrender errors") {
     s.fails_with({"-o", "o.exr", "--device", "cuda:99"}, ErrorClass::device, {"--device cuda:99"});
   }
 
+  TEST_CASE("an object whose vertices are float32") {
+    const Studio s;
+    s.succeeds("kdbuild", {"build", data_file("quad.obj"), "-o", "compiled/quad.nkd", "--vertices", "float32"});
+    s.fails_with({"-o", "o.exr"}, ErrorClass::object, {"compiled/quad.nkd", "without --vertices float32"});
+  }
+
   TEST_CASE("a gamma that is no number") {
     const Studio s;
     s.fails_with({"-o", "o.exr", "--gamma", "nan"}, ErrorClass::usage, {"--gamma", "nan"});

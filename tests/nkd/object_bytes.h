@@ -1,6 +1,7 @@
 // Objects in memory that a test can spoil, and files of them.
 #pragma once
 
+#include <bit>
 #include <filesystem>
 #include <fstream>
 #include <optional>
@@ -26,6 +27,7 @@ struct Contents {
   nkd::Summary summary;
   std::vector<Node> nodes;
   std::vector<uint32_t> references, triangles, vertices;
+  VertexForm form = VertexForm::lattice;
   std::vector<uint32_t> source_primitives, normal_indices;
   std::vector<Vec3f> normals;
   std::vector<Material> materials;
@@ -54,7 +56,17 @@ struct Contents {
 
   void count_tree() { summary.tree = tree_statistics(nodes, summary.lattice); }
 
-  nkd::Geometry geometry() const { return {nodes, references, triangles, vertices, summary.lattice.bits}; }
+  /// Stores the vertices in float32, up to a quarter of a step beside their lattice points. Of 24 bits.
+  void store_floats(uint64_t seed) {
+    Random random(seed);
+    form = VertexForm::float32;
+    for (uint32_t& word : vertices) {
+      const bool at_end = word == 0 || word == lattice_max(kMaxLatticeBits);
+      word = std::bit_cast<uint32_t>(static_cast<float>(word + (at_end ? 0 : random.real(-0.24, 0.24))));
+    }
+  }
+
+  nkd::Geometry geometry() const { return {nodes, references, triangles, vertices, summary.lattice.bits, form}; }
 
   std::string write(const std::string& path) const {
     const auto written = nkd::write_object(path, summary, geometry(),

@@ -67,10 +67,11 @@ TEST_CASE("nkd: larger than a FlatBuffer can be") {
 
 TEST_CASE("nkd: any byte changed") {
   const TempFolder folder;
-  for (const int bits : {12, 24}) {
-    const Contents c(soup_shape(bits, 12, Soup::mixed, 2), bits);
+  for (const auto& [bits, floats] : {std::pair{12, false}, std::pair{24, false}, std::pair{24, true}}) {
+    Contents c(soup_shape(bits, 12, Soup::mixed, 2), bits);
+    if (floats) c.store_floats(1);
     const std::string good = read_bytes(c.write(folder.file("a.nkd")));
-    Random random(static_cast<uint64_t>(bits));
+    Random random(static_cast<uint64_t>(bits + floats));
     int opened = 0;
     for (int i = 0; i < 10000; ++i) {
       std::string bad = good;

@@ -21,6 +21,15 @@ const float kNaN = std::numeric_limits<float>::quiet_NaN();
 
 Contents good(int bits = kBits) { return Contents(soup_shape(bits, 40, Soup::mixed, 5), bits); }
 
+/// With a float32 vertex that is none: coordinate 4 has these bits.
+std::function<void(Contents&)> float_vertex(uint32_t bits) {
+  return [bits](Contents& c) {
+    c = good(24);
+    c.store_floats(1);
+    c.vertices[4] = bits;
+  };
+}
+
 /// The first inner node behind the root, or leaf with references.
 uint32_t first_node(const Contents& c, bool leaf) {
   for (uint32_t i = 2; i < c.nodes.size(); ++i) {
@@ -120,6 +129,8 @@ const std::vector<BadFile>& bad_files() {
       {Issue::box, [](Contents& c) { c.summary.lattice.extent.x = -1; }, {}},
       {Issue::displacement, [](Contents& c) { c.summary.max_displacement = kNaN; }, {}},
       {Issue::displacement, [](Contents& c) { c.summary.rms_displacement = -1e-9; }, {}},
+      {Issue::vertex_form, [](Contents& c) { c.form = VertexForm::float32; }, {}},
+      {Issue::vertex_form, [](Contents& c) { c.form = static_cast<VertexForm>(2); }, {}},
       {Issue::node_count, [](Contents& c) { c.nodes.resize(1); }, {}},
       {Issue::child_index, [](Contents& c) { c.nodes[0] = make_inner(0, 5, 0); }, {}},
       {Issue::child_index, [](Contents& c) { c.nodes[0] = make_inner(0, 5, 0, kUpperEmpty); }, {}},
@@ -162,6 +173,11 @@ const std::vector<BadFile>& bad_files() {
          c.vertices[4] = 1u << 23;
        },
        {}},
+      {Issue::vertex_value, float_vertex(std::bit_cast<uint32_t>(kNaN)), {}},
+      {Issue::vertex_value, float_vertex(std::bit_cast<uint32_t>(HUGE_VALF)), {}},
+      {Issue::vertex_value, float_vertex(std::bit_cast<uint32_t>(16777216.0f)), {}},
+      {Issue::vertex_value, float_vertex(std::bit_cast<uint32_t>(-1e-30f)), {}},
+      {Issue::vertex_value, float_vertex(std::bit_cast<uint32_t>(-0.0f)), {}},
       {Issue::source_primitives, [](Contents& c) { c.source_primitives.pop_back(); }, {}},
       {Issue::normals, [](Contents& c) { c.normal_indices.resize(c.normal_indices.size() - 3); }, {}},
       {Issue::normals, [](Contents& c) { c.normal_indices[5] = 3; }, {}},
@@ -227,6 +243,9 @@ TEST_CASE("nkd: the good file is sound") {
     CHECK(verdict(Contents(rooms_shape(bits, 4, 5), bits).write(folder.file("a.nkd"))) == "sound");
     CHECK(verdict(Contents(stacked_boxes_shape(bits, 3), bits).write(folder.file("a.nkd"))) == "sound");
   }
+  Contents floats = good(24);
+  floats.store_floats(1);
+  CHECK(verdict(floats.write(folder.file("a.nkd"))) == "sound");
 }
 
 TEST_CASE("nkd: every issue has a bad file, which is told by its code") {

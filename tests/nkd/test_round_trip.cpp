@@ -67,6 +67,38 @@ TEST_CASE("nkd: every section comes back, at every vertex width") {
   }
 }
 
+TEST_CASE("nkd: float32 vertices come back, and as the lattice points that the tree knows") {
+  const TempFolder folder;
+  const Shape shape = soup_shape(24, 300, Soup::mixed, 1);
+  Contents c(shape, 24);
+  c.store_floats(7);
+  const auto file = nkd::ObjectFile::open(c.write(folder.file("a.nkd")));
+  REQUIRE(file);
+  const nkd::Geometry& g = file->geometry();
+  CHECK(g.form == VertexForm::float32);
+  CHECK(same(g.vertices, c.vertices));
+  REQUIRE(g.vertex_count() == shape.vertices.size());
+  CHECK(g.vertices.size_bytes() == 12 * shape.vertices.size());
+  int off_lattice = 0;
+  for (size_t i = 0; i < shape.vertices.size(); ++i) {
+    const Vec3f p = g.packed().position(i);
+    REQUIRE(p == Vec3f{std::bit_cast<float>(c.vertices[3 * i]), std::bit_cast<float>(c.vertices[3 * i + 1]),
+                       std::bit_cast<float>(c.vertices[3 * i + 2])});
+    REQUIRE(g.packed().lattice_point(i) == shape.vertices[i]);
+    off_lattice += !(p == vec_cast<float>(shape.vertices[i]));
+  }
+  CHECK(off_lattice > 200);
+  for (size_t i = 0; i < g.triangle_count(); ++i) {
+    TriangleVertices t;
+    g.packed().expand(i, t);
+    REQUIRE(t.a == g.packed().position(shape.triangles[i][0]));
+    REQUIRE(t.b == g.packed().position(shape.triangles[i][1]));
+    REQUIRE(t.c == g.packed().position(shape.triangles[i][2]));
+  }
+  Contents lattice(shape, 24);
+  CHECK(nkd::ObjectFile::open(lattice.write(folder.file("b.nkd")))->geometry().form == VertexForm::lattice);
+}
+
 TEST_CASE("nkd: attributes that an object does not have") {
   const TempFolder folder;
   const Contents c(box_shape({0, 0, 0}, {1023, 1023, 1023}), 10, false);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -23,6 +24,7 @@ namespace {
 struct Options {
   std::vector<std::string> inputs;
   std::string output, stats, depfile;
+  std::optional<int> bits;
   CompileSettings settings;
   unsigned jobs = 1, threads = 0;
   bool force = false, dry_run = false, explain = false, quiet = false;
@@ -179,16 +181,36 @@ int run(const Options& options) {
   return status;
 }
 
+/// The lattice and what is stored on it. ErrorClass::usage for options that contradict each other.
+Result<void> settle_vertices(Options& o) {
+  CompileSettings& s = o.settings;
+  if (s.vertices == VertexForm::float32 && (s.max_error || o.bits.value_or(kMaxLatticeBits) != kMaxLatticeBits)) {
+    return Error{ErrorClass::usage, "--vertices float32",
+                 fmt::format("excludes {}: float32 vertices stand over a lattice of {} bits",
+                             s.max_error ? "--max-error" : fmt::format("--bits {}", *o.bits), kMaxLatticeBits)};
+  }
+  s.bits = o.bits.value_or(s.vertices == VertexForm::float32 ? kMaxLatticeBits : kDefaultLatticeBits);
+  return {};
+}
+
 /// What an object will be.
 void add_object_options(CLI::App& c, const std::shared_ptr<Options>& options) {
   CompileSettings& s = options->settings;
-  CLI::Option* bits = c.add_option("--bits", s.bits, "Bits of the lattice an axis")
+  CLI::Option* bits = c.add_option("--bits", options->bits, "Bits of the lattice an axis")
                           ->check(whole_number(kMinLatticeBits, kMaxLatticeBits))
-                          ->capture_default_str();
+                          ->default_str(std::to_string(kDefaultLatticeBits));
   c.add_option("--max-error", s.max_error,
                "Use the fewest bits, from 10 on, that move no vertex further than this (model units)")
       ->check(number(1e-300, 1e300))
       ->excludes(bits);
+  c.add_option_function<std::string>(
+       "--vertices",
+       [options](const std::string& form) {
+         options->settings.vertices = form == "float32" ? VertexForm::float32 : VertexForm::lattice;
+       },
+       "Store vertices on the lattice, or for benchmarks (no render takes them) as float32")
+      ->check(CLI::IsMember({"lattice", "float32"}))
+      ->default_str("lattice");
   c.add_flag("--ambient-from-diffuse", s.ambient_from_diffuse,
              "Take a material's ambient colour from its diffuse one, whatever the MTL's Ka says");
   c.add_option_function<std::string>(
@@ -262,7 +284,10 @@ Command build_command(CLI::App& app) {
       ->check(file_name());
   add_object_options(*c, options);
   add_run_options(*c, options);
-  return {c, [options] { return run(*options); }};
+  return {c, [options] {
+            const auto settled = settle_vertices(*options);
+            return settled ? run(*options) : fail(kKdbuild, settled.error());
+          }};
 }
 
 }  // namespace kd::tools

@@ -126,8 +126,9 @@ void print_object(const std::string& input, const CompileReport& r) {
   print_fault("the same as an earlier one", "dropped", r.clean.duplicate);
   print_fault("the back of an earlier one", "kept", r.clean.opposite);
   print_fault("collapsed on the lattice", "dropped", r.collapsed);
-  fmt::print("  lattice: {} bits{}, largest displacement {:.3g}, RMS {:.3g} (model units)\n", r.lattice.bits,
-             r.max_error ? fmt::format(" (the fewest for {:.3g})", *r.max_error) : "", r.max_displacement,
+  fmt::print("  lattice: {} bits{}{}, largest displacement {:.3g}, RMS {:.3g} (model units)\n", r.lattice.bits,
+             r.max_error ? fmt::format(" (the fewest for {:.3g})", *r.max_error) : "",
+             r.vertex_form == VertexForm::float32 ? ", vertices in float32" : "", r.max_displacement,
              r.rms_displacement);
   fmt::print("  tree: SAH cost {:.2f}, {} nodes, {:.2f} references a triangle, depth {}\n", r.tree.sah_cost,
              r.tree.inner_nodes + r.tree.leaves, per_triangle(r.references, r), r.tree.depth);

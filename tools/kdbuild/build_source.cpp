@@ -245,7 +245,8 @@ Result<void> SourceBuild::compile_one(Lot& lot, const mesh::Mesh& mesh, CompileR
   std::optional<Share> share;
   if (!name.empty()) share = Share{lot.mesh, asset_.meshes.size(), std::nullopt};
   if (is_piece) share->piece = lot.pieces;
-  const ObjectTarget target{lot.where, path, lot.box, lot.bits, provenance(job_, source_hash_, settings_, share)};
+  const ObjectTarget target{
+      lot.where, path, lot.box, lot.bits, settings_.vertices, provenance(job_, source_hash_, settings_, share)};
   const auto progress = [&](double done) {
     const double here = static_cast<double>(triangles_done_) + done * static_cast<double>(mesh.triangles.size());
     return keep_going(progress_, here / static_cast<double>(triangles_));

@@ -1,6 +1,7 @@
 #include "kdbuild/compile.h"
 
 #include <algorithm>
+#include <bit>
 
 #include <fmt/format.h>
 
@@ -37,6 +38,16 @@ struct KeptAttributes {
   }
 };
 
+std::vector<uint32_t> stored_vertices(const mesh::LatticeMesh& lattice_mesh, VertexForm form) {
+  if (form == VertexForm::lattice) return pack_triples(lattice_mesh.vertices, lattice_mesh.lattice.bits);
+  std::vector<uint32_t> words;
+  words.reserve(3 * lattice_mesh.float_vertices.size());
+  for (const Vec3f& v : lattice_mesh.float_vertices) {
+    for (int axis = 0; axis < 3; ++axis) words.push_back(std::bit_cast<uint32_t>(v[axis]));
+  }
+  return words;
+}
+
 void report_lattice(const mesh::LatticeMesh& lattice_mesh, CompileReport& report) {
   report.lattice = lattice_mesh.lattice;
   report.triangles = lattice_mesh.triangles.size();
@@ -65,8 +76,9 @@ Result<void> clean_mesh(mesh::Mesh& mesh, const std::string& where, CompileRepor
 Result<AtomicFile> compile(const mesh::Mesh& mesh, const ObjectTarget& target, const build::BuildSettings& settings,
                            CompileReport& report, const Progress& progress) {
   Timer timer;
-  const mesh::LatticeMesh lattice_mesh = mesh::normalise(mesh, target.bits, target.box);
+  const mesh::LatticeMesh lattice_mesh = mesh::normalise(mesh, target.bits, target.box, target.vertices);
   report_lattice(lattice_mesh, report);
+  report.vertex_form = target.vertices;
   report.seconds.normalise = timer.lap();
   if (lattice_mesh.triangles.empty()) {
     return Error{ErrorClass::mesh, target.where,
@@ -82,16 +94,16 @@ Result<AtomicFile> compile(const mesh::Mesh& mesh, const ObjectTarget& target, c
 
   const int bits = lattice_mesh.lattice.bits,
             corner_bits = nkd::Geometry::corner_bits_for(lattice_mesh.vertices.size());
-  const std::vector<uint32_t> vertices = pack_triples(lattice_mesh.vertices, bits);
+  const std::vector<uint32_t> vertices = stored_vertices(lattice_mesh, target.vertices);
   const std::vector<uint32_t> triangles = pack_triples(lattice_mesh.triangles, corner_bits);
   const KeptAttributes attributes(mesh, lattice_mesh);
   const nkd::Summary summary{lattice_mesh.lattice, report.max_displacement, report.rms_displacement,
                              report.tree,          target.provenance,       mesh.material_names};
   auto file = AtomicFile::create(target.output);
   if (!file) return file.error();
-  const auto written =
-      nkd::write_object(file->temporary_path(), summary, {tree->nodes, tree->references, triangles, vertices, bits},
-                        attributes.view(mesh));
+  const auto written = nkd::write_object(file->temporary_path(), summary,
+                                         {tree->nodes, tree->references, triangles, vertices, bits, target.vertices},
+                                         attributes.view(mesh));
   if (!written) return Error{written.error().error_class, target.output, written.error().what};
   report.bytes = *written;
   report.seconds.write = timer.lap();

@@ -27,6 +27,7 @@ struct CompileReport {
   mesh::CleanReport clean;
   mesh::Topology topology;
   Lattice lattice;
+  VertexForm vertex_form = VertexForm::lattice;
   std::optional<double> max_error;  // what chose the lattice's bits, if anything did
   uint64_t welded_vertices = 0;
   mesh::FaceFault collapsed;
@@ -50,6 +51,7 @@ struct ObjectTarget {
   std::string output;
   Box3d box;  // of the lattice, model space; contains the mesh
   int bits = kDefaultLatticeBits;
+  VertexForm vertices = VertexForm::lattice;  // float32 only with kMaxLatticeBits
   nkd::Provenance provenance;
 };
 

@@ -50,6 +50,7 @@ CompileReport report_of(const nkd::ObjectFile& file) {
   report.triangles = g.triangle_count();
   report.vertices = g.vertex_count();
   report.lattice = s.lattice;
+  report.vertex_form = g.form;
   report.max_displacement = s.max_displacement;
   report.rms_displacement = s.rms_displacement;
   report.tree = s.tree;

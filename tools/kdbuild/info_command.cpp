@@ -32,6 +32,7 @@ Json info_json(const nkd::ObjectFile& file) {
       {"bytes", file.size()},
       {"triangles", g.triangle_count()},
       {"vertices", g.vertex_count()},
+      {"vertex_form", name_of(g.form)},
       {"lattice", {{"bits", s.lattice.bits}, {"origin", vec(s.lattice.origin)}, {"extent", vec(s.lattice.extent)}}},
       {"error", {{"max", s.max_displacement}, {"rms", s.rms_displacement}}},
       {"tree",
@@ -72,8 +73,8 @@ void print_info(const nkd::ObjectFile& file) {
              per_triangle(file.size()));
   fmt::print("  made from {} (XXH3 {}) by {} with {}\n", s.provenance.source_name, hash_text(s.provenance.source_hash),
              s.provenance.writer, s.provenance.settings);
-  fmt::print("  box [{:.6g} {:.6g} {:.6g}]..[{:.6g} {:.6g} {:.6g}], {} bits an axis\n", lo.x, lo.y, lo.z, hi.x, hi.y,
-             hi.z, s.lattice.bits);
+  fmt::print("  box [{:.6g} {:.6g} {:.6g}]..[{:.6g} {:.6g} {:.6g}], {} bits an axis{}\n", lo.x, lo.y, lo.z, hi.x, hi.y,
+             hi.z, s.lattice.bits, g.form == VertexForm::float32 ? "; vertices in float32" : "");
   fmt::print("  largest displacement {:.3g}, RMS {:.3g} (model units)\n", s.max_displacement, s.rms_displacement);
   fmt::print("  SAH cost {:.2f} (1 : 1.5); depth {}, {} of {} leaves empty, the largest has {} triangles\n",
              s.tree.sah_cost, s.tree.depth, s.tree.empty_leaves, s.tree.leaves, s.tree.largest_leaf);

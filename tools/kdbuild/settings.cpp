@@ -10,6 +10,7 @@ std::string settings_text(const CompileSettings& s) {
   const auto add = [&text](const char* flag, auto value, auto usual) {
     if (value != usual) text += fmt::format(" {} {}", flag, value);
   };
+  if (s.vertices != VertexForm::lattice) text += fmt::format(" --vertices {}", name_of(s.vertices));
   if (s.ambient_from_diffuse) text += " --ambient-from-diffuse";
   if (s.split != mesh::Split::none) text += s.split == mesh::Split::object ? " --split object" : " --split material";
   add("--max-object-size", s.max_object_size, standard.max_object_size);

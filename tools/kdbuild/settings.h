@@ -6,6 +6,7 @@
 #include <string>
 
 #include "build/build.h"
+#include "core/object_view.h"
 #include "mesh/asset.h"
 
 namespace kd::tools {
@@ -15,7 +16,8 @@ constexpr uint64_t kSmallestObjectLimit = 1ull << 16;  // bytes: a header and a 
 
 struct CompileSettings {
   int bits = kDefaultLatticeBits;
-  std::optional<double> max_error;  // model units: then the fewest bits that keep it, instead of `bits`
+  std::optional<double> max_error;            // model units: then the fewest bits that keep it, instead of `bits`
+  VertexForm vertices = VertexForm::lattice;  // float32 only with kMaxLatticeBits bits, and without max_error
   bool ambient_from_diffuse = false;
   mesh::Split split = mesh::Split::none;
   uint64_t max_object_size = kLargestObject;  // bytes: a mesh that needs more becomes several objects

@@ -12,6 +12,10 @@ namespace kd::tools {
 
 namespace {
 
+/// A tree over float32 vertices was built over lattice points, and only for those can it be exact.
+constexpr const char* kRounded =
+    " (vertices in float32: the tree was checked against the lattice points nearest to them)";
+
 struct Options {
   std::vector<std::string> files;
   std::string format = "text";
@@ -43,7 +47,9 @@ int run(const Options& options) {
         entry["findings"].push_back(finding_json(finding));
         if (text) fail(kKdbuild, {ErrorClass::object, path, finding.line()});
       }
-      if (findings.empty() && text) fmt::print("{}: sound\n", path);
+      const bool rounded = file->geometry().form == VertexForm::float32;
+      entry["vertex_form"] = name_of(file->geometry().form);
+      if (findings.empty() && text) fmt::print("{}: sound{}\n", path, rounded ? kRounded : "");
       if (!findings.empty() && status == 0) status = static_cast<int>(ErrorClass::object);
     }
     report["files"].push_back(std::move(entry));

@@ -131,7 +131,7 @@ cudaError_t fill_object(const DeviceObject& object, const Staging& staging, cons
   if (status == cudaSuccess) status = upload(staging.corners, geometry.triangles, stream);
   if (status != cudaSuccess) return status;
   const auto count = static_cast<uint32_t>(geometry.triangle_count());
-  const PackedTriangles packed{staging.corners, staging.vertices, geometry.corner_bits(), geometry.bits};
+  const PackedTriangles packed{staging.corners, staging.vertices, geometry.corner_bits(), geometry.bits, geometry.form};
   expand_kernel<<<blocks_for(count), kBlock, 0, stream>>>(packed, count, object.triangles);
   return cudaGetLastError();
 }
