@@ -48,13 +48,14 @@ struct StackEntry {
 /// there. Returns kNoTriangle if there is none. Of two triangles at the same distance (as float32) the lower index
 /// wins, so the answer depends on no order of visits. `excluded`: a triangle that is never met (a shadow ray's own), or
 /// kNoTriangle.
-template <RayMode mode, class Counter>
+template <RayMode mode, class Test = ExactTest, class Counter>
 KD_HD inline uint32_t traverse(const ObjectView& object, const LatticeRay& ray, float s_limit, uint32_t excluded,
                                Counter& counter) {
   using namespace detail;
   // Empty children are passed over without being looked at. Not for shadow rays: on an H100 the longer loop that takes
   // cells off the stack costs them a quarter to two thirds of their speed (docs/benchmarks.md).
   constexpr bool kPassOver = mode == RayMode::closest;
+  const Test test{ray};
   StackEntry stack[kMaxDepth];
   int depth = 0;
   uint32_t best = kNoTriangle;
@@ -93,8 +94,8 @@ KD_HD inline uint32_t traverse(const ObjectView& object, const LatticeRay& ray, 
     for (uint32_t r = begin; r < end; ++r) {
       const uint32_t candidate = object.references[r];
       counter.triangle();
-      TriangleHit hit;
-      if (candidate == excluded || !intersect_triangle(ray, object.triangles[candidate], s_best, hit)) continue;
+      typename Test::Hit hit;
+      if (candidate == excluded || !test.intersect(object.triangles[candidate], s_best, hit)) continue;
       const float s = static_cast<float>(hit.s);
       if (s < ray.s_min || s > s_best) continue;
       if constexpr (mode == RayMode::any) return candidate;

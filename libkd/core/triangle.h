@@ -124,4 +124,15 @@ KD_HD KD_INLINE bool intersect_triangle(const LatticeRay& ray, const TriangleVer
   return true;
 }
 
+/// The test as traversal takes it; for benchmarks another may stand in its place (core/float_triangle.h).
+struct ExactTest {
+  using Hit = TriangleHit;
+  static constexpr bool kExact = true;
+  const LatticeRay& ray;
+
+  KD_HD KD_INLINE bool intersect(const TriangleVertices& triangle, float s_limit, TriangleHit& hit) const {
+    return intersect_triangle(ray, triangle, s_limit, hit);
+  }
+};
+
 }  // namespace kd

@@ -5,8 +5,10 @@
 #include <span>
 #include <vector>
 
+#include "core/float_triangle.h"
 #include "core/frame.h"
 #include "core/traversal.h"
+#include "render/float_ray.h"
 
 namespace kd::render {
 
@@ -32,17 +34,22 @@ struct TraceView {
   const uint32_t* source_primitives = nullptr;  // null: triangle i is primitive i
 };
 
-template <RayMode mode, class Counter>
+/// Which triangle test the kernel runs. All but the exact one are baselines, and take a ray that is not snapped.
+enum class TriangleTest { exact, moller_trumbore, woop };
+
+template <RayMode mode, class Test, class Counter>
 KD_HD inline HitRecord trace_ray(const TraceView& view, const RayRecord& r, Counter& counter) {
   const Vec3d origin = view.to_lattice.apply_point({r.ox, r.oy, r.oz});
   const Vec3d direction = view.to_lattice.apply_vector({r.dx, r.dy, r.dz});
   const HitRecord miss{r.t_max, -1, 0, 0};
   LatticeRay ray;
-  if (!snap_ray(origin, direction, r.t_min, r.t_max, view.object.bits, ray)) return miss;
-  const uint32_t triangle = traverse<mode>(view.object, ray, ray.s_max, kNoTriangle, counter);
+  const bool enters = Test::kExact ? snap_ray(origin, direction, r.t_min, r.t_max, view.object.bits, ray)
+                                   : float_ray(origin, direction, r.t_min, r.t_max, view.object.bits, ray);
+  if (!enters) return miss;
+  const uint32_t triangle = traverse<mode, Test>(view.object, ray, ray.s_max, kNoTriangle, counter);
   if (triangle == kNoTriangle) return miss;
-  TriangleHit hit;
-  intersect_triangle(ray, view.object.triangles[triangle], ray.s_max, hit);
+  typename Test::Hit hit;
+  Test{ray}.intersect(view.object.triangles[triangle], ray.s_max, hit);
   const uint32_t source = view.source_primitives ? view.source_primitives[triangle] : triangle;
   return {static_cast<float>(ray.t_at(hit.s)), static_cast<int32_t>(source), static_cast<float>(hit.u),
           static_cast<float>(hit.v)};
@@ -52,9 +59,30 @@ struct TraceJob {
   std::span<const RayRecord> rays;
   RayMode mode = RayMode::closest;
   int warm_ups = 3;
-  int repeats = 10;          // >= 1
-  bool count_steps = false;  // CPU only: one more pass that counts
+  int repeats = 10;                         // >= 1
+  bool count_steps = false;                 // CPU only: one more pass that counts
+  TriangleTest test = TriangleTest::exact;  // of float32 vertices the exact test is none
 };
+
+/// Calls visit.operator()<mode, Test>() for the kernel that a job asks for.
+template <class Visit>
+void with_kernel(const TraceJob& job, Visit&& visit) {
+  const auto with_mode = [&]<class Test>() {
+    if (job.mode == RayMode::closest) {
+      visit.template operator()<RayMode::closest, Test>();
+    } else {
+      visit.template operator()<RayMode::any, Test>();
+    }
+  };
+  switch (job.test) {
+    case TriangleTest::exact:
+      return with_mode.template operator()<ExactTest>();
+    case TriangleTest::moller_trumbore:
+      return with_mode.template operator()<MollerTrumboreTest>();
+    case TriangleTest::woop:
+      return with_mode.template operator()<WoopTest>();
+  }
+}
 
 struct StepCounts {
   uint64_t nodes = 0;

@@ -46,13 +46,13 @@ __global__ void __launch_bounds__(kBlock) stage_kernel(Stage stage, unsigned lon
   if (threadIdx.x == 0 && in_block > 0) atomicAdd(total, static_cast<unsigned long long>(in_block));
 }
 
-template <RayMode mode>
+template <RayMode mode, class Test>
 __global__ void __launch_bounds__(kBlock)
     trace_kernel(TraceView view, const RayRecord* rays, uint32_t count, HitRecord* hits) {
   const uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
   if (i >= count) return;
   NoCounter counter;
-  hits[i] = trace_ray<mode>(view, rays[i], counter);
+  hits[i] = trace_ray<mode, Test>(view, rays[i], counter);
 }
 
 class Stream {
@@ -397,11 +397,9 @@ Result<TraceOutcome> cuda_trace(const nkd::ObjectFile& object, const TraceJob& j
   const auto count = static_cast<uint32_t>(job.rays.size());
   const auto launch = [&] {
     if (count == 0) return;
-    if (job.mode == RayMode::closest) {
-      trace_kernel<RayMode::closest><<<blocks_for(count), kBlock, 0, stream>>>(view, rays, count, hits);
-    } else {
-      trace_kernel<RayMode::any><<<blocks_for(count), kBlock, 0, stream>>>(view, rays, count, hits);
-    }
+    with_kernel(job, [&]<RayMode mode, class Test>() {
+      trace_kernel<mode, Test><<<blocks_for(count), kBlock, 0, stream>>>(view, rays, count, hits);
+    });
   };
   TraceOutcome out;
   Event start, end;
