@@ -26,8 +26,9 @@ Result<ImageSize> parse_size(const std::string& text) {
 }
 
 Result<RayMeasurement> measure_rays(const render::Device& device, const nkd::ObjectFile& object, const char* name,
-                                    std::span<const render::RayRecord> rays, RayMode mode, const Effort& effort) {
-  const render::TraceJob job{rays, mode, effort.warm_ups, effort.repeats, effort.count_steps};
+                                    std::span<const render::RayRecord> rays, RayMode mode, render::TriangleTest test,
+                                    const Effort& effort) {
+  const render::TraceJob job{rays, mode, effort.warm_ups, effort.repeats, effort.count_steps, test};
   auto outcome = device.backend->trace(object, job, device.index);
   if (!outcome) return outcome.error();
   RayMeasurement m{name, mode, rays.size(), ray_hash(rays), 0, 0, std::move(*outcome)};
@@ -45,13 +46,13 @@ SharedTrace::SharedTrace(const SharedCamera& camera, ImageSize size)
     : camera_(camera), primary_(primary_rays(camera, size.width, size.height)) {}
 
 Result<std::array<RayMeasurement, 3>> SharedTrace::measure(const render::Device& device, const nkd::ObjectFile& object,
-                                                           const Effort& effort) {
-  auto primary = measure_rays(device, object, "primary", primary_.rays, RayMode::closest, effort);
+                                                           render::TriangleTest test, const Effort& effort) {
+  auto primary = measure_rays(device, object, "primary", primary_.rays, RayMode::closest, test, effort);
   if (!primary) return primary.error();
   if (!secondary_) secondary_ = secondary_rays(object, camera_, primary_, primary->outcome.hits);
-  auto shadow = measure_rays(device, object, "shadow", secondary_->shadow, RayMode::any, effort);
+  auto shadow = measure_rays(device, object, "shadow", secondary_->shadow, RayMode::any, test, effort);
   if (!shadow) return shadow.error();
-  auto diffuse = measure_rays(device, object, "diffuse", secondary_->diffuse, RayMode::closest, effort);
+  auto diffuse = measure_rays(device, object, "diffuse", secondary_->diffuse, RayMode::closest, test, effort);
   if (!diffuse) return diffuse.error();
   return std::array{std::move(*primary), std::move(*shadow), std::move(*diffuse)};
 }

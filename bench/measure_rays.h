@@ -47,7 +47,8 @@ struct RayMeasurement {
 
 /// Errors as those of the device's backend.
 Result<RayMeasurement> measure_rays(const render::Device& device, const nkd::ObjectFile& object, const char* name,
-                                    std::span<const render::RayRecord> rays, RayMode mode, const Effort& effort);
+                                    std::span<const render::RayRecord> rays, RayMode mode, render::TriangleTest test,
+                                    const Effort& effort);
 
 /// The shared rays of one camera, for one mesh in any number of objects: the secondary rays start where the primary
 /// rays hit the first of them, so that all objects get the same rays.
@@ -57,7 +58,7 @@ class SharedTrace {
 
   /// Primary, shadow and diffuse, in this order.
   Result<std::array<RayMeasurement, 3>> measure(const render::Device& device, const nkd::ObjectFile& object,
-                                                const Effort& effort);
+                                                render::TriangleTest test, const Effort& effort);
   /// Shadow rays whose surface faces the light. After the first `measure`.
   uint64_t facing() const { return secondary_->facing; }
 

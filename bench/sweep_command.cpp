@@ -78,7 +78,7 @@ Result<void> sweep(const Options& o) {
     if (!report) return report.error();
     auto object = nkd::ObjectFile::open(object_path);
     if (!object) return object.error();
-    auto rays = shared.measure(*device, *object, o.effort);
+    auto rays = shared.measure(*device, *object, render::TriangleTest::exact, o.effort);
     if (!rays) return rays.error();
     table.add(row(point, *report, *rays));
     fmt::print("{}", table.last_row());

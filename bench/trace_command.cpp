@@ -14,6 +14,7 @@
 #include "sys/atomic_file.h"
 #include "sys/hash.h"
 #include "sys/parallel.h"
+#include "triangle_test.h"
 
 namespace kd::bench {
 
@@ -22,7 +23,7 @@ namespace {
 using tools::Json;
 
 struct Options : RayOptions {
-  std::string object, rays, camera, size = "1920x1080", mode = "closest", hits, json;
+  std::string object, rays, camera, size = "1920x1080", mode = "closest", test, hits, json;
 };
 
 Result<std::vector<render::RayRecord>> read_rays(const std::string& path) {
@@ -72,43 +73,51 @@ void print_result(const Json& j) {
   }
 }
 
+/// What is traced, and how.
+struct Subject {
+  render::Device device;
+  nkd::ObjectFile object;
+  render::TriangleTest test;
+};
+
 /// The rays that the options ask for, traced: one class from a file, or the three shared ones.
 struct Traced {
   std::vector<RayMeasurement> classes;
   std::optional<uint64_t> facing;  // shared rays only
 };
 
-Result<Traced> trace_file(const Options& o, const render::Device& device, const nkd::ObjectFile& object) {
+Result<Traced> trace_file(const Options& o, const Subject& subject) {
   auto rays = read_rays(o.rays);
   if (!rays) return rays.error();
   const RayMode mode = o.mode == "any" ? RayMode::any : RayMode::closest;
-  auto measured = measure_rays(device, object, "file", *rays, mode, o.effort);
+  auto measured = measure_rays(subject.device, subject.object, "file", *rays, mode, subject.test, o.effort);
   if (!measured) return measured.error();
   Traced out;
   out.classes.push_back(std::move(*measured));
   return out;
 }
 
-Result<Traced> trace_shared(const Options& o, const render::Device& device, const nkd::ObjectFile& object,
-                            ImageSize size) {
+Result<Traced> trace_shared(const Options& o, const Subject& subject, ImageSize size) {
   auto camera = read_camera(o.camera);
   if (!camera) return camera.error();
   SharedTrace shared(*camera, size);
-  auto measured = shared.measure(device, object, o.effort);
+  auto measured = shared.measure(subject.device, subject.object, subject.test, o.effort);
   if (!measured) return measured.error();
   Traced out{{}, shared.facing()};
   for (RayMeasurement& m : *measured) out.classes.push_back(std::move(m));
   return out;
 }
 
-Json report_json(const Options& o, const render::Device& device, const nkd::ObjectFile& object, const Traced& traced) {
-  const size_t triangles = object.geometry().triangle_count();
+Json report_json(const Options& o, const Subject& subject, const Traced& traced) {
+  const size_t triangles = subject.object.geometry().triangle_count();
   const uint64_t bytes = traced.classes.back().outcome.device_bytes;
   Json j{{"version", 1},
          {"tool", tools::version_text()},
          {"object", o.object},
          {"triangles", triangles},
-         {"device", device.description},
+         {"vertex_form", kd::name_of(subject.object.geometry().form)},
+         {"triangle_test", name_of(subject.test)},
+         {"device", subject.device.description},
          {"warm_ups", o.effort.warm_ups},
          {"repeats", o.effort.repeats},
          {"device_bytes", bytes},
@@ -120,8 +129,9 @@ Json report_json(const Options& o, const render::Device& device, const nkd::Obje
 
 void print_report(const Json& report) {
   for (const Json& result : report["results"]) print_result(result);
-  fmt::print("object on the device: {} bytes, {:.1f} a triangle\n", report["device_bytes"].get<uint64_t>(),
-             report["device_bytes_per_triangle"].get<double>());
+  fmt::print("object on the device: {} bytes, {:.1f} a triangle; vertices: {}, triangle test: {}\n",
+             report["device_bytes"].get<uint64_t>(), report["device_bytes_per_triangle"].get<double>(),
+             report["vertex_form"].get<std::string>(), report["triangle_test"].get<std::string>());
 }
 
 /// The hits of all classes, one after the other.
@@ -143,11 +153,14 @@ Result<void> trace(const Options& o) {
   if (!device) return device.error();
   auto object = nkd::ObjectFile::open(o.object);
   if (!object) return object.error();
+  auto test = choose_triangle_test(o.test, *object);
+  if (!test) return test.error();
   if (o.json != "-") fmt::print("{} on {}\n", o.object, device->description);
 
-  auto traced = o.rays.empty() ? trace_shared(o, *device, *object, *size) : trace_file(o, *device, *object);
+  const Subject subject{*device, std::move(*object), *test};
+  auto traced = o.rays.empty() ? trace_shared(o, subject, *size) : trace_file(o, subject);
   if (!traced) return traced.error();
-  const Json report = report_json(o, *device, *object, *traced);
+  const Json report = report_json(o, subject, *traced);
   if (o.json != "-") print_report(report);
   if (!o.hits.empty()) {
     if (auto written = write_hits(o.hits, *traced); !written) return written;
@@ -168,6 +181,10 @@ Command trace_command(CLI::App& app) {
   c->add_option("--mode", o->mode, "closest or any, of a file of rays")
       ->check(CLI::IsMember({"closest", "any"}))
       ->capture_default_str();
+  c->add_option("--triangle-test", o->test,
+                triangle_test_names() +
+                    ", the last two in float32, as baselines; by default exact, or woop for an "
+                    "object of float32 vertices");
   add_ray_options(*c, *o);
   c->add_flag("--count", o->effort.count_steps, "Count nodes, leaves and triangles a ray (CPU)");
   c->add_option("--hits", o->hits, "Write the hits: float t, int32 primitive, float u, v, 16 bytes each");

@@ -129,6 +129,53 @@ TEST_SUITE("kdbench trace") {
     check_miss(any[3], 1.5f);
   }
 
+  TEST_CASE("--triangle-test, on either form of vertices") {
+    Terminal t;
+    const std::string mesh = data_file("icosphere.ply");
+    t.succeeds("kdbuild", {"build", mesh, "-o", "lattice.nkd"});
+    t.succeeds("kdbuild", {"build", mesh, "-o", "float32.nkd", "--vertices", "float32"});
+    t.write("cam.txt", kCamera);
+    const auto trace = [&](const std::string& form, const Arguments& more) {
+      Arguments all{"trace",  form + ".nkd", "--camera", "cam.txt", "--size", "64x48",    "--repeat", "1",
+                    "--json", "r.json",      "--count",  "--hits",  "h.bin",  "--device", "cpu"};
+      all.insert(all.end(), more.begin(), more.end());
+      const std::string text = t.succeeds(kTool, all).out;
+      auto report = nlohmann::json::parse(t.read("r.json"));
+      check_report("kdbench-trace", report);
+      CHECK(report["vertex_form"] == form);
+      const std::string said = "vertices: " + form + ", triangle test: " + report["triangle_test"].get<std::string>();
+      CHECK_MESSAGE(text.find(said) != std::string::npos, text);
+      return report;
+    };
+    const auto exact = trace("lattice", {});
+    CHECK(exact["triangle_test"] == "exact");
+    CHECK(trace("float32", {})["triangle_test"] == "woop");
+    const auto expected = hits_of((trace("lattice", {"--triangle-test", "exact"}), t.read("h.bin")));
+    for (const char* form : {"lattice", "float32"}) {
+      for (const char* test : {"moller-trumbore", "woop"}) {
+        const auto report = trace(form, {"--triangle-test", test});
+        CHECK(report["triangle_test"] == test);
+        CHECK(report["results"][0]["ray_hash"] == exact["results"][0]["ray_hash"]);
+        CHECK(report["results"][0]["hits"].get<double>() ==
+              doctest::Approx(exact["results"][0]["hits"].get<double>()).epsilon(0.01));
+        CHECK(report["results"][0]["mean_t"].get<double>() ==
+              doctest::Approx(exact["results"][0]["mean_t"].get<double>()).epsilon(1e-3));
+        const auto hits = hits_of(t.read("h.bin"));
+        int same = 0, differ = 0;
+        for (size_t i = 0; i < 64 * 48; ++i) {
+          ++(hits[i].primitive == expected[i].primitive ? same : differ);
+          if (hits[i].primitive != expected[i].primitive || hits[i].primitive < 0) continue;
+          CHECK(hits[i].t == doctest::Approx(expected[i].t).epsilon(1e-4));
+        }
+        CHECK(differ < same / 50);
+      }
+    }
+    t.fails(kTool, {"trace", "float32.nkd", "--camera", "cam.txt", "--triangle-test", "exact"}, ErrorClass::usage,
+            {"--triangle-test exact", "float32.nkd", "without --vertices float32"});
+    t.fails(kTool, {"trace", "lattice.nkd", "--camera", "cam.txt", "--triangle-test", "plucker"}, ErrorClass::usage,
+            {"--triangle-test plucker", "moller-trumbore", "woop"});
+  }
+
   TEST_CASE("primitives are numbered as in the source") {
     const Terminal t;
     t.write("q.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 1 2\nf 1 2 3\n");
@@ -213,7 +260,7 @@ TEST_SUITE("kdbench trace") {
     const Terminal t;
     const std::string help = t.succeeds(kTool, {"trace", "--help"}).out;
     for (const char* option : {"--camera", "--size", "--mode", "--device", "--threads", "--repeat", "--warm-up",
-                               "--count", "--hits", "--json", "rays"}) {
+                               "--count", "--triangle-test", "--hits", "--json", "rays"}) {
       CHECK_MESSAGE(help.find(option) != std::string::npos, option);
     }
   }
