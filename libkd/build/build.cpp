@@ -271,7 +271,7 @@ Result<Tree> build_tree(const Lattice& lattice, std::span<const Vec3u> vertices,
   if (builder.cancelled()) return Error{ErrorClass::interrupted, "", "interrupted"};
   if (parts.total_nodes() > kMaxChild || parts.total_references() > 0xffffffffu) {
     return Error{ErrorClass::resource, "",
-                 "the tree outgrows what a node can address (2^28 nodes, 2^32 references): split the mesh"};
+                 "the tree outgrows what a node can address (2^27 nodes, 2^32 references): split the mesh"};
   }
   Subtree whole;
   whole.nodes.reserve(parts.total_nodes());

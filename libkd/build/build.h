@@ -27,7 +27,7 @@ struct Tree {
   std::vector<uint32_t> references;  // leaf order -> triangle, ascending within a leaf
 };
 
-/// The tree over triangles on a lattice. Errors: ErrorClass::resource for a tree of more than 2^28 nodes or 2^32
+/// The tree over triangles on a lattice. Errors: ErrorClass::resource for a tree of more than 2^27 nodes or 2^32
 /// references, ErrorClass::interrupted if `progress` said so.
 Result<Tree> build_tree(const Lattice& lattice, std::span<const Vec3u> vertices,
                         std::span<const std::array<uint32_t, 3>> triangles, const BuildSettings& settings,

@@ -49,7 +49,7 @@ struct Subtree {
     const auto node_shift = static_cast<uint32_t>(out.nodes.size()) - 2;
     const auto reference_shift = static_cast<uint32_t>(out.references.size());
     const auto moved = [&](Node n) {
-      return is_leaf(n) ? Node{n.word + reference_shift, n.link} : Node{n.word, n.link + (node_shift << 4)};
+      return is_leaf(n) ? Node{n.word + reference_shift, n.link} : moved_children(n, node_shift);
     };
     out.nodes[slot] = moved(nodes[0]);
     for (size_t i = 2; i < nodes.size(); ++i) out.nodes.push_back(moved(nodes[i]));

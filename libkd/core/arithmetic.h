@@ -3,6 +3,8 @@
 // operand.
 #pragma once
 
+#include <cmath>
+
 #include "core/platform.h"
 
 namespace kd {
@@ -23,5 +25,12 @@ template <class T>
 KD_HD KD_INLINE constexpr T max_of(T a, T b, T c) {
   return max_of(max_of(a, b), c);
 }
+
+/// The least and the largest of numbers none of which is NaN. Of zeros of both signs either may come out, so they are
+/// for bounds and comparisons, not for results. A device has one instruction for each.
+KD_HD KD_INLINE float least_of(float a, float b) { return KD_ON_DEVICE ? fminf(a, b) : min_of(a, b); }
+KD_HD KD_INLINE float largest_of(float a, float b) { return KD_ON_DEVICE ? fmaxf(a, b) : max_of(a, b); }
+KD_HD KD_INLINE float least_of(float a, float b, float c) { return least_of(least_of(a, b), c); }
+KD_HD KD_INLINE float largest_of(float a, float b, float c) { return largest_of(largest_of(a, b), c); }
 
 }  // namespace kd

@@ -28,11 +28,16 @@ KD_HD KD_INLINE Vec3f fused_cross(Vec3f a, Vec3f b) {
   return {std::fma(a.y, b.z, -(a.z * b.y)), std::fma(a.z, b.x, -(a.x * b.z)), std::fma(a.x, b.y, -(a.y * b.x))};
 }
 
+/// A vertex relative to the ray, axes exchanged so that z is the ray's, and z its distance s along the ray.
+KD_HD KD_INLINE Vec3f relative_to(const LatticeRay& ray, Vec3f p) {
+  const Vec3f r = p - ray.origin;
+  return {ray.axis == 0 ? r.z : r.x, ray.axis == 1 ? r.z : r.y, r[ray.axis] * ray.direction[ray.axis]};
+}
+
 }  // namespace detail
 
 /// Moller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", JGT 1997, both sides of the triangle.
 struct MollerTrumboreTest {
-  using Hit = FloatHit;
   static constexpr bool kExact = false;
   const LatticeRay& ray;
 
@@ -54,6 +59,20 @@ struct MollerTrumboreTest {
     hit = {s * inverse, u * inverse, v * inverse};
     return true;
   }
+
+  template <class Counter>
+  KD_HD KD_INLINE bool meets(const TriangleVertices& triangle, float s_limit, float& s, Counter&) const {
+    FloatHit hit;
+    if (!intersect(triangle, s_limit, hit)) return false;
+    s = hit.s;
+    return true;
+  }
+  /// Of a triangle that the ray meets.
+  KD_HD KD_INLINE FloatHit locate(const TriangleVertices& triangle) const {
+    FloatHit hit;
+    intersect(triangle, 1e30f, hit);
+    return hit;
+  }
 };
 
 /// Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2013, both sides, with its fallback to double
@@ -61,15 +80,14 @@ struct MollerTrumboreTest {
 /// The edge functions are not fused: only then does an edge have the same value, negated, for the triangle on its other
 /// side.
 struct WoopTest {
-  using Hit = FloatHit;
   static constexpr bool kExact = false;
   const LatticeRay& ray;
 
   KD_HD KD_INLINE bool intersect(const TriangleVertices& triangle, float s_limit, FloatHit& hit) const {
     using namespace detail;
-    const RelativeVertex a = relative_to(ray, triangle.a);
-    const RelativeVertex b = relative_to(ray, triangle.b);
-    const RelativeVertex c = relative_to(ray, triangle.c);
+    const Vec3f a = relative_to(ray, triangle.a);
+    const Vec3f b = relative_to(ray, triangle.b);
+    const Vec3f c = relative_to(ray, triangle.c);
     const float dx = ray.axis == 0 ? ray.direction.z : ray.direction.x;
     const float dy = ray.axis == 1 ? ray.direction.z : ray.direction.y;
     const float ax = std::fma(-dx, a.z, a.x), ay = std::fma(-dy, a.z, a.y);
@@ -93,6 +111,20 @@ struct WoopTest {
     const float inverse = 1 / det;
     hit = {s * std::fabs(inverse), v * inverse, w * inverse};
     return true;
+  }
+
+  template <class Counter>
+  KD_HD KD_INLINE bool meets(const TriangleVertices& triangle, float s_limit, float& s, Counter&) const {
+    FloatHit hit;
+    if (!intersect(triangle, s_limit, hit)) return false;
+    s = hit.s;
+    return true;
+  }
+  /// Of a triangle that the ray meets.
+  KD_HD KD_INLINE FloatHit locate(const TriangleVertices& triangle) const {
+    FloatHit hit;
+    intersect(triangle, 1e30f, hit);
+    return hit;
   }
 };
 

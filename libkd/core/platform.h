@@ -3,6 +3,10 @@
 // nowhere else, so a CPU and a GPU that run the same function return the same bits.
 #pragma once
 
+#include <cstddef>
+#include <cstring>
+#include <type_traits>
+
 #if defined(__CUDACC__)
 #define KD_HD __host__ __device__
 #define KD_INLINE __forceinline__
@@ -10,3 +14,32 @@
 #define KD_HD
 #define KD_INLINE inline
 #endif
+
+/// Whether this is the pass that compiles for a device.
+#if defined(__CUDA_ARCH__)
+#define KD_ON_DEVICE true
+#else
+#define KD_ON_DEVICE false
+#endif
+
+namespace kd {
+
+/// *from, which nothing writes while it is read. A device loads it in as few pieces as its alignment, 8 or 16 bytes,
+/// allows: left to itself the compiler takes a triangle in nine.
+template <class T>
+KD_HD KD_INLINE T load(const T* from) {
+  static_assert(alignof(T) == 8 || alignof(T) == 16);
+#if defined(__CUDA_ARCH__)
+  using Piece = std::conditional_t<alignof(T) == 16, uint4, uint2>;
+  constexpr size_t kPieces = sizeof(T) / sizeof(Piece);
+  Piece pieces[kPieces];
+  for (size_t i = 0; i < kPieces; ++i) pieces[i] = __ldg(reinterpret_cast<const Piece*>(from) + i);
+  T value;
+  memcpy(&value, pieces, sizeof value);
+  return value;
+#else
+  return *from;
+#endif
+}
+
+}  // namespace kd

@@ -25,13 +25,6 @@ constexpr uint32_t kNoTriangle = 0xffffffffu;
 
 enum class RayMode { closest, any };
 
-/// What traversal counts when asked to; `NoCounter` compiles to nothing.
-struct NoCounter {
-  KD_HD KD_INLINE void node() {}
-  KD_HD KD_INLINE void leaf() {}
-  KD_HD KD_INLINE void triangle() {}
-};
-
 namespace detail {
 
 constexpr float kExitMargin = 1 + 0x1p-21f;   // 8e: (1 - 2.1e)(1 + 8e) > 1 + 5e
@@ -52,41 +45,45 @@ template <RayMode mode, class Test = ExactTest, class Counter>
 KD_HD inline uint32_t traverse(const ObjectView& object, const LatticeRay& ray, float s_limit, uint32_t excluded,
                                Counter& counter) {
   using namespace detail;
-  // Empty children are passed over without being looked at. Not for shadow rays: on an H100 the longer loop that takes
-  // cells off the stack costs them a quarter to two thirds of their speed (docs/benchmarks.md).
-  constexpr bool kPassOver = mode == RayMode::closest;
   const Test test{ray};
   StackEntry stack[kMaxDepth];
   int depth = 0;
   uint32_t best = kNoTriangle;
   float s_best = min_of(ray.s_max, s_limit);
 
-  uint32_t index = 0;
   float s_entry = ray.s_min * kEntryMargin;
   float s_exit = min_of(ray.s_exit, s_best) * kExitMargin;
+  float s_resume = s_exit;  // where the cell on top of the stack begins
+  Node node = load(object.nodes);
 
   while (true) {
-    Node node = object.nodes[index];
     while (!is_leaf(node)) {
       counter.node();
       const int axis = split_axis(node);
       const float inverse = ray.inverse[axis];
       const float s = (split_plane(node) - ray.origin[axis]) * inverse;
-      const uint32_t near = child_of(node, inverse < 0 ? 1 : 0);
-      const uint32_t far = child_of(node, inverse < 0 ? 0 : 1);
-      if (s > s_exit) {
-        index = near;
-      } else if (s < s_entry) {
-        index = far;
-      } else if (kPassOver && near == kEmptyLeaf) {
-        index = far;
-        s_entry = s * kEntryMargin;
-      } else {
-        stack[depth++] = {far, s_exit};
-        index = near;
-        s_exit = min_of(s_exit, s * kExitMargin);
+      const bool down = inverse < 0;
+      // Empty children are neither visited nor remembered. On a GPU both children are decided on without a branch:
+      // lanes that part over a node take longer than any of its cases.
+      const uint32_t near_empty = down ? kUpperEmpty : kLowerEmpty;
+      const uint32_t far_empty = near_empty ^ (kLowerEmpty | kUpperEmpty);
+      const bool to_near = s >= s_entry && (node.link & near_empty) == 0;
+      const bool to_far = s <= s_exit && (node.link & far_empty) == 0;
+      const uint32_t first = first_child(node);
+      if (to_near && to_far) {
+        stack[depth++] = {first + (down ? 0 : 1), s_exit};
+        s_resume = s * kExitMargin;
       }
-      node = object.nodes[index];
+      if (to_near) {
+        s_exit = least_of(s_exit, s * kExitMargin);
+      } else {
+        s_entry = largest_of(s_entry, s * kEntryMargin);
+      }
+      if (to_near || to_far) {
+        node = load(object.nodes + first + (to_near == down ? 1 : 0));
+      } else {
+        node = make_leaf(0, 0);
+      }
     }
 
     counter.leaf();
@@ -94,9 +91,8 @@ KD_HD inline uint32_t traverse(const ObjectView& object, const LatticeRay& ray, 
     for (uint32_t r = begin; r < end; ++r) {
       const uint32_t candidate = object.references[r];
       counter.triangle();
-      typename Test::Hit hit;
-      if (candidate == excluded || !test.intersect(object.triangles[candidate], s_best, hit)) continue;
-      const float s = static_cast<float>(hit.s);
+      float s;
+      if (candidate == excluded || !test.meets(load(object.triangles + candidate), s_best, s, counter)) continue;
       if (s < ray.s_min || s > s_best) continue;
       if constexpr (mode == RayMode::any) return candidate;
       if (s < s_best || candidate < best) {
@@ -105,15 +101,13 @@ KD_HD inline uint32_t traverse(const ObjectView& object, const LatticeRay& ray, 
       }
     }
 
-    do {
-      if (depth == 0) return best;
-      // The next cell begins where this one ended. Beyond the nearest hit there is nothing left to find.
-      s_entry = s_exit * kEntryMargin;
-      if (s_best < s_entry) return best;
-      --depth;
-      index = stack[depth].node;
-      s_exit = stack[depth].s_exit;
-    } while (kPassOver && index == kEmptyLeaf);
+    if (depth == 0) return best;
+    // Beyond the nearest hit there is nothing left to find.
+    s_entry = s_resume * kEntryMargin;
+    if (s_best < s_entry) return best;
+    --depth;
+    s_resume = s_exit = stack[depth].s_exit;
+    node = load(object.nodes + stack[depth].node);
   }
 }
 

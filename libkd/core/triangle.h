@@ -3,11 +3,12 @@
 // The triangle is sheared along the ray into the plane across the ray's axis (Woop, Benthin, Wald, "Watertight
 // Ray/Triangle Intersection", JCGT 2013), where the ray is the origin and the signs of three edge functions say whether
 // it passes inside. They are evaluated twice:
-//   - in float32, which only rejects: each value comes with a proven bound of its error, and two signs that are certain
-//     and differ mean a miss;
-//   - for what is left, in double, where the sheared coordinates are exact (`core/lattice_ray.h`) and a difference of
-//     products computed after Kahan has the exact sign, zero included (Jeannerod, Louvet, Muller, "Further analysis of
-//     Kahan's algorithm for the accurate computation of 2x2 determinants", Math. Comp. 2013: error at most 1.5 ulp).
+//   - in float32, with a proven bound of their error: two signs that are certain and differ mean a miss, three that are
+//     certain and agree a hit;
+//   - for what is left, and for a hit's distance, in double, where the sheared coordinates are exact
+//     (`core/lattice_ray.h`) and a difference of products computed after Kahan has the exact sign, zero included
+//     (Jeannerod, Louvet, Muller, "Further analysis of Kahan's algorithm for the accurate computation of 2x2
+//     determinants", Math. Comp. 2013: error at most 1.5 ulp).
 // A zero, a ray through an edge or a vertex, is settled by a rule that is the same for all triangles of the object: the
 // ray counts as moved by (e, e^2), e infinitesimal and positive, along the two axes of the plane. So it passes through
 // exactly one of the triangles around a shared edge or vertex, and a triangle seen edge-on is missed.
@@ -30,6 +31,14 @@ struct alignas(16) TriangleVertices {
   uint32_t pad2 = 0;
 };
 
+/// What traversal and the triangle test count when asked to; `NoCounter` compiles to nothing.
+struct NoCounter {
+  KD_HD KD_INLINE void node() {}
+  KD_HD KD_INLINE void leaf() {}
+  KD_HD KD_INLINE void triangle() {}
+  KD_HD KD_INLINE void evaluated_in_double() {}  // a triangle that the filter could not reject
+};
+
 /// Where a ray meets a triangle: distance s along the ray, weights of the vertices b and c.
 struct TriangleHit {
   double s;
@@ -38,32 +47,6 @@ struct TriangleHit {
 };
 
 namespace detail {
-
-/// A vertex relative to the ray, axes exchanged so that z is the ray's. z is its distance s along the ray; x and y are
-/// not sheared yet. All three are exact.
-struct RelativeVertex {
-  float x, y, z;
-};
-
-KD_HD KD_INLINE RelativeVertex relative_to(const LatticeRay& ray, Vec3f p) {
-  const Vec3f r = p - ray.origin;
-  const float along = ray.axis == 0 ? r.x : ray.axis == 1 ? r.y : r.z;
-  const float sign = ray.direction[ray.axis];
-  return {ray.axis == 0 ? r.z : r.x, ray.axis == 1 ? r.z : r.y, along * sign};
-}
-
-/// One edge function, p x q, and a bound of its error. With unit roundoff e = 2^-24 each sheared coordinate is off by
-/// at most e of itself, so each product by at most 2e + O(e^2); one rounding of the second product and one of the sum
-/// come on top: at most 5e of the products' magnitudes in all, and 8e covers the rounding of the bound.
-struct FilteredEdge {
-  float value;
-  float bound;
-};
-
-KD_HD KD_INLINE FilteredEdge filtered_edge(float px, float py, float qx, float qy) {
-  const float second = py * qx;
-  return {std::fma(px, qy, -second), 0x1p-21f * std::fma(std::fabs(px), std::fabs(qy), std::fabs(second))};
-}
 
 /// p x q to 1.5 ulp, so with the exact sign: Kahan's difference of products.
 KD_HD KD_INLINE double exact_edge(double px, double py, double qx, double qy) {
@@ -81,58 +64,129 @@ KD_HD KD_INLINE int edge_side(double edge, double px, double py, double qx, doub
   return 0;
 }
 
+/// A vertex relative to the ray and sheared along it, so that the ray is x = y = 0; `along` is its coordinate on the
+/// ray's axis, not yet turned into a distance by the direction's sign.
+template <class T>
+struct Sheared {
+  T x, y;
+  float along;
+};
+
 }  // namespace detail
 
-/// Whether the ray, taken over all s, passes through the triangle, and if so where. The decision is exact; s, u and v
-/// are good to a few ulp of the largest vertex distance. `s_limit`: hits that are certainly beyond it need not be
-/// found.
-KD_HD KD_INLINE bool intersect_triangle(const LatticeRay& ray, const TriangleVertices& triangle, float s_limit,
-                                        TriangleHit& hit) {
-  using namespace detail;
-  const RelativeVertex a = relative_to(ray, triangle.a);
-  const RelativeVertex b = relative_to(ray, triangle.b);
-  const RelativeVertex c = relative_to(ray, triangle.c);
-  if (min_of(a.z, b.z, c.z) > s_limit || max_of(a.z, b.z, c.z) < 0) return false;
+/// One ray against any triangles of its object. The decisions are exact. Traversal takes the test as a policy, so that
+/// benchmarks can put another in its place (core/float_triangle.h).
+class ExactTest {
+ public:
+  static constexpr bool kExact = true;
 
-  const float dx = ray.axis == 0 ? ray.direction.z : ray.direction.x;
-  const float dy = ray.axis == 1 ? ray.direction.z : ray.direction.y;
-  const float ax = std::fma(-dx, a.z, a.x), ay = std::fma(-dy, a.z, a.y);
-  const float bx = std::fma(-dx, b.z, b.x), by = std::fma(-dy, b.z, b.y);
-  const float cx = std::fma(-dx, c.z, c.x), cy = std::fma(-dy, c.z, c.y);
-  const FilteredEdge fu = filtered_edge(bx, by, cx, cy);
-  const FilteredEdge fv = filtered_edge(cx, cy, ax, ay);
-  const FilteredEdge fw = filtered_edge(ax, ay, bx, by);
-  const bool some_positive = fu.value > fu.bound || fv.value > fv.bound || fw.value > fw.bound;
-  const bool some_negative = fu.value < -fu.bound || fv.value < -fv.bound || fw.value < -fw.bound;
-  if (some_positive && some_negative) return false;
+  KD_HD KD_INLINE explicit ExactTest(const LatticeRay& ray)
+      : origin_(ray.origin), sign_(ray.direction[ray.axis]), along_x_(ray.axis == 0), along_y_(ray.axis == 1) {
+    slope_x_ = -sign_ * (along_x_ ? ray.direction.z : ray.direction.x);
+    slope_y_ = -sign_ * (along_y_ ? ray.direction.z : ray.direction.y);
+  }
 
-  const auto shear = [](float slope, float z, float x) {
-    return static_cast<double>(x) - static_cast<double>(slope) * static_cast<double>(z);
+  /// Whether the ray, taken over all s, passes through the triangle, and then its distance s, rounded once from a value
+  /// good to a few ulp of the largest vertex distance. Hits that are certainly beyond `s_limit`, or before 0, need not
+  /// be found.
+  template <class Counter>
+  KD_HD KD_INLINE bool meets(const TriangleVertices& triangle, float s_limit, float& s, Counter& counter) const {
+    const Side side = filter(triangle, s_limit);
+    if (side == Side::outside) return false;
+    counter.evaluated_in_double();
+    const Weights w = weigh(triangle);
+    if (side == Side::unsure && !w.all_on_one_side()) return false;
+    // None of the three is on the other side of 0, and not all are 0: that is a triangle seen edge-on, and missed.
+    s = static_cast<float>(w.distance_times_sum(sign_) * w.inverse_sum());
+    return true;
+  }
+
+  /// Where the ray meets a triangle that it passes through; s, u and v are good to a few ulp, and s is the one that
+  /// `meets` rounds.
+  KD_HD KD_INLINE TriangleHit locate(const TriangleVertices& triangle) const {
+    const Weights w = weigh(triangle);
+    const double inverse = w.inverse_sum();
+    return {w.distance_times_sum(sign_) * inverse, w.v * inverse, w.w * inverse};
+  }
+
+ private:
+  enum class Side { outside, inside, unsure };
+
+  /// The three edge functions, exact in sign: each the weight of the vertex across from its edge.
+  struct Weights {
+    detail::Sheared<double> a, b, c;
+    double u, v, w;
+
+    KD_HD KD_INLINE double inverse_sum() const { return 1 / (u + v + w); }
+    KD_HD KD_INLINE double distance_times_sum(float sign) const {
+      return u * (a.along * sign) + v * (b.along * sign) + w * (c.along * sign);
+    }
+    KD_HD KD_INLINE bool all_on_one_side() const {
+      using detail::edge_side;
+      const int side = edge_side(u, b.x, b.y, c.x, c.y);
+      return side != 0 && edge_side(v, c.x, c.y, a.x, a.y) == side && edge_side(w, a.x, a.y, b.x, b.y) == side;
+    }
   };
-  const double eax = shear(dx, a.z, a.x), eay = shear(dy, a.z, a.y);
-  const double ebx = shear(dx, b.z, b.x), eby = shear(dy, b.z, b.y);
-  const double ecx = shear(dx, c.z, c.x), ecy = shear(dy, c.z, c.y);
-  const double u = exact_edge(ebx, eby, ecx, ecy);
-  const double v = exact_edge(ecx, ecy, eax, eay);
-  const double w = exact_edge(eax, eay, ebx, eby);
-  const int side = edge_side(u, ebx, eby, ecx, ecy);
-  if (side == 0 || edge_side(v, ecx, ecy, eax, eay) != side || edge_side(w, eax, eay, ebx, eby) != side) return false;
 
-  // None of the three is on the other side of 0, and not all are 0: that is a triangle seen edge-on, missed above.
-  const double sum = u + v + w;
-  hit = {(u * a.z + v * b.z + w * c.z) / sum, v / sum, w / sum};
+  /// In float32 each sheared coordinate is off by one rounding of itself, in double it is exact: v - origin is exact in
+  /// float32, and 24 bits of slope times 24 bits of distance fit.
+  template <class T>
+  KD_HD KD_INLINE detail::Sheared<T> shear(Vec3f p) const {
+    const Vec3f r = p - origin_;
+    const float along = along_x_ ? r.x : along_y_ ? r.y : r.z;
+    const T x = along_x_ ? r.z : r.x, y = along_y_ ? r.z : r.y;
+    return {std::fma(static_cast<T>(slope_x_), static_cast<T>(along), x),
+            std::fma(static_cast<T>(slope_y_), static_cast<T>(along), y), along};
+  }
+
+  /// The decision in float32, which may be that it cannot tell. With unit roundoff e = 2^-24 each product of two
+  /// sheared coordinates is off by at most 2e + O(e^2) of itself; one rounding of the second product and one of the
+  /// difference come on top: at most 5e of the products' magnitudes in all, each of which is at most the largest |x|
+  /// times the largest |y|. So 10e of that, and 16e cover the roundings of the bound too.
+  KD_HD KD_INLINE Side filter(const TriangleVertices& triangle, float s_limit) const {
+    const auto a = shear<float>(triangle.a), b = shear<float>(triangle.b), c = shear<float>(triangle.c);
+    const float bound = 0x1p-20f * largest_of(std::fabs(a.x), std::fabs(b.x), std::fabs(c.x)) *
+                        largest_of(std::fabs(a.y), std::fabs(b.y), std::fabs(c.y));
+    const float u = std::fma(b.x, c.y, -(b.y * c.x));
+    const float v = std::fma(c.x, a.y, -(c.y * a.x));
+    const float w = std::fma(a.x, b.y, -(a.y * b.x));
+    const float least = least_of(u, v, w), largest = largest_of(u, v, w);
+    if (least < -bound && largest > bound) return Side::outside;
+    const float sa = a.along * sign_, sb = b.along * sign_, sc = c.along * sign_;
+    if (least_of(sa, sb, sc) > s_limit || largest_of(sa, sb, sc) < 0) return Side::outside;
+    return least > bound || largest < -bound ? Side::inside : Side::unsure;
+  }
+
+  KD_HD KD_INLINE Weights weigh(const TriangleVertices& triangle) const {
+    const auto a = shear<double>(triangle.a), b = shear<double>(triangle.b), c = shear<double>(triangle.c);
+    return {a,
+            b,
+            c,
+            detail::exact_edge(b.x, b.y, c.x, c.y),
+            detail::exact_edge(c.x, c.y, a.x, a.y),
+            detail::exact_edge(a.x, a.y, b.x, b.y)};
+  }
+
+  Vec3f origin_;
+  float sign_;               // of the direction along its axis
+  float slope_x_, slope_y_;  // what x and y lose for each step along the axis, negated
+  bool along_x_, along_y_;   // the axis; where both are false it is z
+};
+
+/// ExactTest::meets and, if so, ExactTest::locate.
+template <class Counter>
+KD_HD KD_INLINE bool intersect_triangle(const LatticeRay& ray, const TriangleVertices& triangle, float s_limit,
+                                        TriangleHit& hit, Counter& counter) {
+  const ExactTest test(ray);
+  float s;
+  if (!test.meets(triangle, s_limit, s, counter)) return false;
+  hit = test.locate(triangle);
   return true;
 }
-
-/// The test as traversal takes it; for benchmarks another may stand in its place (core/float_triangle.h).
-struct ExactTest {
-  using Hit = TriangleHit;
-  static constexpr bool kExact = true;
-  const LatticeRay& ray;
-
-  KD_HD KD_INLINE bool intersect(const TriangleVertices& triangle, float s_limit, TriangleHit& hit) const {
-    return intersect_triangle(ray, triangle, s_limit, hit);
-  }
-};
+KD_HD KD_INLINE bool intersect_triangle(const LatticeRay& ray, const TriangleVertices& triangle, float s_limit,
+                                        TriangleHit& hit) {
+  NoCounter counter;
+  return intersect_triangle(ray, triangle, s_limit, hit, counter);
+}
 
 }  // namespace kd

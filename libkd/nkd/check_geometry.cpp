@@ -18,9 +18,13 @@ struct Children {
 };
 
 Children stored_children(Node inner) {
-  const uint32_t lower = inner.link >> 4, empty = inner.link >> 2 & (kLowerEmpty | kUpperEmpty);
-  return {lower + (empty & kLowerEmpty), lower + 1 - (empty >> 1)};
+  static_assert(kUpperEmpty == 2 * kLowerEmpty);
+  const uint32_t lower = first_child(inner), empty = empty_children(inner) / kLowerEmpty;
+  return {lower + (empty & 1), lower + 1 - (empty >> 1)};
 }
+
+/// Whether the lowest bits are an axis, or a leaf's.
+bool is_node(Node node) { return is_leaf(node) ? (node.link & 3) == 0 : (node.link & 3) != 3; }
 
 bool is_lattice_plane(float plane, int bits) {
   return plane >= 0 && plane <= static_cast<float>(lattice_max(bits)) && plane == std::floor(plane);
@@ -78,7 +82,8 @@ class FastNodeCheck {
       const float above = plane > 0 ? plane : 0;  // 0 for what is no number
       const float clamped = above < top_ ? above : top_;
       const uint32_t off = static_cast<float>(static_cast<int32_t>(clamped)) != plane;
-      unsound |= (leaf & outside) | (~leaf & (astray | off));
+      const uint32_t bits = node.link & 7;
+      unsound |= (leaf & outside) | (~leaf & (astray | off)) | (bits == 3) | (bits > 4);
       children += ~leaf & (last - first + 1);
       first_[j] = (leaf & count_) | (~leaf & first);
       last_[j] = (leaf & count_) | (~leaf & last);
@@ -112,6 +117,7 @@ Check find_unsound_node(const Geometry& geometry) {
     const Node node = nodes[i];
     const auto wrong = [&](Issue issue) { return found(issue, fmt::format("node {}", i)); };
     if (depth_of[i] == 0 && i != kEmptyLeaf) return wrong(Issue::unreached_node);
+    if (!is_node(node)) return wrong(Issue::node_bits);
     if (is_leaf(node)) {
       const uint64_t end = uint64_t{first_reference(node)} + reference_count(node);
       if (end > geometry.references.size()) return wrong(Issue::leaf_range);

@@ -14,6 +14,7 @@ struct StepCounter {
   void node() { ++counts.nodes; }
   void leaf() { ++counts.leaves; }
   void triangle() { ++counts.triangles; }
+  void evaluated_in_double() {}
 };
 
 template <RayMode mode, class Test>

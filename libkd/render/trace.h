@@ -13,14 +13,14 @@
 namespace kd::render {
 
 /// A ray in model space as RAYS.bin has it: 32 bytes, little-endian.
-struct RayRecord {
+struct alignas(16) RayRecord {
   float ox, oy, oz, t_min, dx, dy, dz, t_max;
 };
 static_assert(sizeof(RayRecord) == 32);
 
 /// A hit as HITS.bin has it: 16 bytes. A miss has primitive -1 and the ray's t_max; with RayMode::any the hit is
 /// whichever was found first.
-struct HitRecord {
+struct alignas(16) HitRecord {
   float t;
   int32_t primitive;  // the triangle's number in the source mesh
   float u, v;
@@ -48,8 +48,7 @@ KD_HD inline HitRecord trace_ray(const TraceView& view, const RayRecord& r, Coun
   if (!enters) return miss;
   const uint32_t triangle = traverse<mode, Test>(view.object, ray, ray.s_max, kNoTriangle, counter);
   if (triangle == kNoTriangle) return miss;
-  typename Test::Hit hit;
-  Test{ray}.intersect(view.object.triangles[triangle], ray.s_max, hit);
+  const auto hit = Test{ray}.locate(load(view.object.triangles + triangle));
   const uint32_t source = view.source_primitives ? view.source_primitives[triangle] : triangle;
   return {static_cast<float>(ray.t_at(hit.s)), static_cast<int32_t>(source), static_cast<float>(hit.u),
           static_cast<float>(hit.v)};

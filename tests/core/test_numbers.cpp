@@ -97,7 +97,7 @@ TEST_CASE("node: bits as stored") {
   CHECK(split_plane(inner) == 16777215.0f);
   CHECK(child_of(inner, 0) == kMaxChild - 1);
   CHECK(child_of(inner, 1) == kMaxChild);
-  CHECK(make_inner(1, 1, 2) == Node{0x3f800000, 2 << 4 | 1});
+  CHECK(make_inner(1, 1, 2) == Node{0x3f800000, 2 << 5 | 1});
   CHECK(child_of(make_inner(1, 1, 7, kLowerEmpty), 0) == kEmptyLeaf);
   CHECK(child_of(make_inner(1, 1, 7, kLowerEmpty), 1) == 8);
   CHECK(child_of(make_inner(1, 1, 7, kUpperEmpty), 0) == 7);

@@ -24,7 +24,7 @@ void compare(const Traced& traced, const LatticeRay& ray, Tally& tally) {
   if (expected == kNoTriangle) return;
   ++tally.hits;
 
-  TriangleHit hit;
+  TriangleHit hit{};
   tally.any += some == kNoTriangle || !intersect_triangle(ray, traced.triangles[some], 1e30f, hit);
   REQUIRE(intersect_triangle(ray, traced.triangles[expected], 1e30f, hit));
   const auto s = static_cast<float>(hit.s);

@@ -141,6 +141,8 @@ const std::vector<BadFile>& bad_files() {
       {Issue::child_index, [](Contents& c) { c.nodes[0] = make_inner(0, 5, 2, kLowerEmpty | kUpperEmpty); }, {}},
       {Issue::empty_leaf, [](Contents& c) { c.nodes[1] = make_inner(0, 5, 4); }, {}},
       {Issue::empty_leaf, [](Contents& c) { c.nodes[1] = make_leaf(0, 1); }, {}},
+      {Issue::node_bits, [](Contents& c) { c.nodes[first_node(c, false)].link |= 3; }, {}},
+      {Issue::node_bits, [](Contents& c) { c.nodes[first_node(c, true)].link |= 1; }, {}},
       {Issue::shared_child,
        [](Contents& c) { c.nodes = {make_inner(0, 5, 2), {}, make_inner(0, 1, 4), make_inner(0, 7, 4), {}, {}}; },
        {}},

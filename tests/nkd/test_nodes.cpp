@@ -28,7 +28,7 @@ std::vector<Node> random_tree(std::mt19937& random, uint32_t inner_nodes, int bi
     const uint32_t parent = leaves[at];
     leaves.erase(leaves.begin() + static_cast<std::ptrdiff_t>(at));
     const auto next = static_cast<uint32_t>(nodes.size());
-    const uint32_t empty = below(3);  // none, lower, upper
+    const uint32_t empty = below(3) * kLowerEmpty;  // none, lower, upper
     nodes[parent] = make_inner(static_cast<int>(below(3)), below(lattice_max(bits) + 1),
                                next - (empty == kLowerEmpty ? 1 : 0), empty);
     for (uint32_t child = 0; child < (empty ? 1u : 2u); ++child) {
@@ -43,15 +43,17 @@ std::vector<Node> random_tree(std::mt19937& random, uint32_t inner_nodes, int bi
 bool sound_below(const std::vector<Node>& nodes, int bits, uint32_t index, int inner_above, std::vector<int>& visits) {
   if (++visits[index] > 1) return false;
   const Node node = nodes[index];
+  const uint32_t kind = node.link & 7;
+  if (kind == 3 || kind > 4) return false;
   if (is_leaf(node)) return uint64_t{first_reference(node)} + reference_count(node) <= kReferences;
   const double plane = split_plane(node);
   if (!(plane >= 0 && plane <= lattice_max(bits)) || plane != std::floor(plane)) return false;
   if (inner_above >= kMaxDepth) return false;
   int stored = 0;
   for (uint32_t side = 0; side < 2; ++side) {
-    if ((node.link >> (2 + side) & 1) != 0) continue;
+    if ((node.link >> (3 + side) & 1) != 0) continue;
     ++stored;
-    const uint64_t child = uint64_t{node.link >> 4} + side;
+    const uint64_t child = uint64_t{node.link >> 5} + side;
     if (child >= nodes.size() || child <= index) return false;
     if (!sound_below(nodes, bits, static_cast<uint32_t>(child), inner_above + 1, visits)) return false;
   }
@@ -60,7 +62,7 @@ bool sound_below(const std::vector<Node>& nodes, int bits, uint32_t index, int i
 
 bool sound_by_walking(const std::vector<Node>& nodes, int bits) {
   if (!is_leaf(nodes[kEmptyLeaf]) || reference_count(nodes[kEmptyLeaf]) != 0) return false;
-  if (first_reference(nodes[kEmptyLeaf]) > kReferences) return false;
+  if (first_reference(nodes[kEmptyLeaf]) > kReferences || (nodes[kEmptyLeaf].link & 7) != 4) return false;
   std::vector<int> visits(nodes.size(), 0);
   if (!sound_below(nodes, bits, 0, 0, visits) || visits[kEmptyLeaf] != 0) return false;
   visits[kEmptyLeaf] = 1;
@@ -86,10 +88,10 @@ void damage(std::vector<Node>& nodes, std::mt19937& random) {
       node.word = other.word;
       break;
     case 4:
-      node.link += 1u << 4;
+      node.link += 1u << 5;
       break;
     case 5:
-      node.link -= 1u << 4;
+      node.link -= 1u << 5;
       break;
     case 6:
       node.word = std::bit_cast<uint32_t>(kFloats[random() % std::size(kFloats)]);

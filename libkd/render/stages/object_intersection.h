@@ -70,8 +70,7 @@ KD_HD inline SurfaceHit closest_hit(const SceneView& scene, const Ray& ray) {
     NoCounter counter;
     const uint32_t triangle = traverse<RayMode::closest>(object, lattice_ray, s_limit, kNoTriangle, counter);
     if (triangle == kNoTriangle) return true;
-    TriangleHit hit;
-    intersect_triangle(lattice_ray, object.triangles[triangle], s_limit, hit);
+    const TriangleHit hit = ExactTest(lattice_ray).locate(load(object.triangles + triangle));
     reduce(best, {lattice_ray.t_at(hit.s), hit.u, hit.v, index, triangle});
     t_limit = best.t;
     return true;
