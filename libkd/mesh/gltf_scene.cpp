@@ -24,11 +24,6 @@ Vec3d vector_of(const std::vector<double>& v, Vec3d otherwise) {
 
 /// A node's own frame, in its parent's; or what is wrong.
 std::string read_frame(const tinygltf::Node& node, Frame& frame) {
-  const auto fits = [](const std::vector<double>& v, size_t size) { return v.empty() || v.size() == size; };
-  if (!fits(node.matrix, 16)) return "'matrix' must have 16 numbers";
-  if (!fits(node.translation, 3) || !fits(node.scale, 3) || !fits(node.rotation, 4)) {
-    return "'translation' and 'scale' must have 3 numbers, 'rotation' 4";
-  }
   if (!node.matrix.empty()) {
     const auto column = [&](size_t i) { return Vec3d{node.matrix[i], node.matrix[i + 1], node.matrix[i + 2]}; };
     const double last_row[] = {node.matrix[3], node.matrix[7], node.matrix[11], node.matrix[15] - 1};
@@ -216,8 +211,7 @@ void Placer::place_lights(const Box3d& box_scene) {
     placed.direction = normalised(-light.frame.z_axis);
     const double distance = std::max(length(light.frame.point - centre), least);
     const double strength = placed.point ? light.source->intensity / (distance * distance) : light.source->intensity;
-    const bool has_colour = light.source->color.size() == 3;
-    const Vec3d colour = vector_of(has_colour ? light.source->color : std::vector<double>{}, {1, 1, 1}) * strength;
+    const Vec3d colour = vector_of(light.source->color, {1, 1, 1}) * strength;
     const bool is_sound = colour.x >= 0 && colour.y >= 0 && colour.z >= 0 && is_finite(colour) &&
                           is_finite(light.frame.point) && std::fabs(length(placed.direction) - 1) < 0.5;
     if (!is_sound) {

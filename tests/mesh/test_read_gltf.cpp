@@ -261,7 +261,7 @@ TEST_CASE("gltf: numbers that point to nothing") {
            Row{R"("indices": 2)", R"("indices": 0)", "accessor 0 is not of scalars"},
            Row{R"("indices": 2)", R"("indices": 2, "material": 1)", "has material 1, but there are 1"},
            Row{R"([{"mesh": 0}])", R"([{"mesh": 1}])", "has mesh 1, but there are 1"},
-           Row{R"([{"mesh": 0}])", R"([{"mesh": 18446744073709551616}])", "'nodes[0].mesh' must be a whole number"},
+           Row{R"([{"mesh": 0}])", R"([{"mesh": 18446744073709551616}])", "'/nodes/0/mesh' must be a whole number"},
            Row{R"([{"mesh": 0}])", R"([{"camera": 0}])", "has camera 0, but there are 0"},
            Row{R"([{"mesh": 0}])", R"([{"children": [1]}])", "has the child 1"},
            Row{R"([{"mesh": 0}])", R"([{"children": [0]}])", "form a cycle"},
@@ -270,10 +270,10 @@ TEST_CASE("gltf: numbers that point to nothing") {
            Row{R"([{"mesh": 0}])", R"([{}, {"children": [2]}, {"children": [1]}])", "form a cycle"},
            Row{R"([{"mesh": 0}])", R"([{"extensions": {"KHR_lights_punctual": {"light": 0}}}])", "has light 0"},
            Row{R"([{"mesh": 0}])", R"([{"extensions": {"KHR_lights_punctual": {"light": -1}}}])", "whole number"},
-           Row{R"([{"mesh": 0}])", R"([{"matrix": [1, 2]}])", "'matrix' must have 16"},
+           Row{R"([{"mesh": 0}])", R"([{"matrix": [1, 2]}])", "'/nodes/0/matrix' must be an array of 16 numbers"},
            Row{R"([{"mesh": 0}])", R"([{"matrix": [1,0,0,1, 0,1,0,0, 0,0,1,0, 0,0,0,1]}])", "last row"},
            Row{R"([{"mesh": 0}])", R"([{"rotation": [0, 0, 0, 0]}])", "quaternion"},
-           Row{R"([{"mesh": 0}])", R"([{"translation": [1, "2", 3]}])", "'nodes[0].translation[1]' must be a number"},
+           Row{R"([{"mesh": 0}])", R"([{"translation": [1, "2", 3]}])", "'/nodes/0/translation/1' must be a number"},
            Row{R"("nodes": [0])", R"("nodes": [1])", "has node 1, but there are 1"},
            Row{R"("nodes": [0])", R"("nodes": [0, 0])", "twice"},
            Row{R"("scene": 0)", R"("scene": 1)", "the default scene is 1, but there are 1"},
@@ -309,7 +309,9 @@ TEST_CASE("gltf: numbers that point to nothing") {
            Row{R"("asset")", R"("extensionsRequired": ["EXT_meshopt_compression"], "asset")",
                "EXT_meshopt_compression"},
            Row{R"("attributes")", R"("attribute")", "attributes"},
-           Row{R"("materials": [{}])", R"("materials": [3])", "materials"},
+           Row{R"("materials": [{}])", R"("materials": [3])", "'/materials/0' must be an object"},
+           Row{R"("POSITION": 0)", R"("a/b~c": "x")", "'/meshes/0/primitives/0/attributes/a~1b~0c' must be"},
+           Row{R"({"version": "2.0"})", R"({"version": "1.0"}, "nodes": {"a": {}})", "glTF version 1.0"},
            Row{R"("cameras": [])", R"("cameras": [{"type": "perspective"}])", "tinygltf"},
        }) {
     CAPTURE(std::string(row.to));
@@ -371,6 +373,17 @@ TEST_CASE("gltf: containers that are cut, padded or lie") {
   CHECK(mentions(fault(with_word(8, static_cast<uint32_t>(whole.size() + 1)), "a.glb"), "truncated"));
   CHECK(mentions(fault(with_word(12, 0xffffffff), "a.glb"), "chunk 0 ends behind"));
   CHECK(mentions(fault(with_word(16, 7), "a.glb"), "not JSON"));
+  // A chunk's length that is no multiple of four: with padding behind it, as the file's length tells, or without.
+  std::string json = square_json("");
+  json.resize((json.size() + 3) / 4 * 4 + 2, ' ');
+  const auto with_odd_json = [&](const std::string& padding) {
+    const std::string even = glb(json, square_bytes());
+    return raw<uint32_t>({0x46546c67, 2, static_cast<uint32_t>(28 + json.size() + padding.size() + 108),
+                          static_cast<uint32_t>(json.size()), 0x4e4f534a}) +
+           json + padding + even.substr(even.size() - 116);
+  };
+  CHECK(sound(read(with_odd_json(""), "a.glb")).is_plain_mesh());
+  CHECK(sound(read(with_odd_json("  "), "a.glb")).is_plain_mesh());
   const size_t second = whole.size() - 108 - 8;
   CHECK(mentions(fault(with_word(second, 109), "a.glb"), "chunk 1 ends behind"));
   CHECK(mentions(fault(with_word(second + 4, 7), "a.glb"), "no binary chunk"));
