@@ -1,11 +1,11 @@
 #include "mesh/dependencies.h"
 
 #include <algorithm>
-#include <cstring>
 #include <filesystem>
 
 #include <nlohmann/json.hpp>
 
+#include "mesh/gltf_json.h"
 #include "mesh/text.h"
 
 namespace kd::mesh {
@@ -43,20 +43,13 @@ std::string rest_of_line(std::string_view text, size_t start) {
   return line;
 }
 
-/// The JSON of a glTF file, which may be the first chunk of a GLB container.
-std::string_view json_of(std::string_view text) {
-  constexpr size_t kHeader = 20;
-  if (!text.starts_with("glTF") || text.size() < kHeader) return text;
-  uint32_t size = 0;
-  std::memcpy(&size, text.data() + 12, sizeof size);
-  return text.substr(kHeader, size);
-}
-
-std::vector<std::string> buffer_files(std::string_view text, const std::string& path) {
+std::vector<std::string> buffer_files(std::span<const std::byte> bytes, const std::string& path) {
   std::vector<std::string> files;
-  const auto root = nlohmann::json::parse(json_of(text), nullptr, false);
-  if (!root.is_object() || !root.contains("buffers")) return files;
-  for (const auto& buffer : root["buffers"]) {
+  const auto container = open_container(bytes, path);
+  if (!container) return files;
+  const auto root = parse_gltf_json(text_of(container->json), path);
+  if (!root || !root->contains("buffers")) return files;
+  for (const auto& buffer : root->at("buffers")) {
     if (!buffer.is_object() || !buffer.contains("uri") || !buffer["uri"].is_string()) continue;
     const std::string uri = buffer["uri"];
     if (uri.starts_with("data:")) continue;
@@ -71,7 +64,7 @@ std::vector<std::string> buffer_files(std::string_view text, const std::string& 
 std::vector<std::string> dependencies(std::span<const std::byte> bytes, const std::string& path) {
   const std::string extension = lower_case(std::filesystem::path(path).extension().string());
   if (extension == ".obj") return mtl_files(text_of(bytes), path);
-  if (extension == ".gltf" || extension == ".glb") return buffer_files(text_of(bytes), path);
+  if (extension == ".gltf" || extension == ".glb") return buffer_files(bytes, path);
   return {};
 }
 

@@ -1,6 +1,9 @@
 // Which further files a mesh file names.
 #include <doctest/doctest.h>
 
+#include <chrono>
+
+#include "gltf_texts.h"
 #include "mesh/dependencies.h"
 
 using namespace kd::mesh;
@@ -29,12 +32,16 @@ TEST_CASE("dependencies: a glTF's buffers outside it") {
       R"({"buffers": [{"uri": "a%20b.bin"}, {"uri": "data:;base64,AA=="}, {}, {"uri": "c.bin"}, {"uri": "c.bin"}],
           "images": [{"uri": "t.png"}]})";
   CHECK(files_of(json, "in/x.gltf") == Files{"in/a b.bin", "in/c.bin"});
-  const auto size = static_cast<char>(json.size());
-  const std::string glb = std::string("glTF\2\0\0\0\0\0\0\0", 12) + size + std::string("\0\0\0JSON", 7) + json + "BIN";
-  CHECK(files_of(glb, "x.glb") == Files{"a b.bin", "c.bin"});
+  CHECK(files_of(kd::test::glb(json, "BIN"), "x.glb") == Files{"a b.bin", "c.bin"});
   for (const char* broken : {"", "{", "[]", "glTF", R"({"buffers": 1})", R"({"buffers": [1, {"uri": 2}]})"}) {
     CHECK(files_of(broken, "x.gltf") == Files{});
   }
+}
+
+TEST_CASE("dependencies: nesting without end is refused before it is parsed") {
+  const auto start = std::chrono::steady_clock::now();
+  CHECK(files_of(std::string(20'000'000, '['), "x.gltf") == Files{});
+  CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(1));
 }
 
 TEST_CASE("dependencies: other formats have none") { CHECK(files_of("mtllib m.mtl\n", "a.ply") == Files{}); }
