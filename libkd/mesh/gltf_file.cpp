@@ -48,7 +48,7 @@ std::string find_version_fault(const Json& root) {
 bool is_known(const std::string& extension) {
   // Materials' and textures' extensions change colours only.
   return extension == "KHR_mesh_quantization" || extension == "KHR_lights_punctual" ||
-         extension == "KHR_techniques_webgl" || extension.starts_with("KHR_materials_") ||
+         extension.starts_with("KHR_technique") || extension.starts_with("KHR_materials_") ||
          extension.find("_texture_") != std::string::npos;
 }
 
