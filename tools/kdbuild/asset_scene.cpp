@@ -33,10 +33,13 @@ scene::Scene asset_scene(const mesh::Asset& asset, const std::string& name, cons
   scene::Scene out;
   scene::Character character{name, {}};
   Box3d box_scene;
-  for (const SceneMember& member : members) out.objects.push_back({member.name, member.file});
+  std::vector<std::vector<uint32_t>> members_of(asset.meshes.size());
+  for (const SceneMember& member : members) {
+    members_of[member.mesh].push_back(static_cast<uint32_t>(out.objects.size()));
+    out.objects.push_back({member.name, member.file});
+  }
   for (const mesh::MeshInstance& instance : asset.instances) {
-    for (uint32_t i = 0; i < members.size(); ++i) {
-      if (members[i].mesh != instance.mesh) continue;
+    for (const uint32_t i : members_of[instance.mesh]) {
       scene::Part part;
       part.name = instance.name;
       part.object = i;
