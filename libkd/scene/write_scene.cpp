@@ -16,12 +16,19 @@
 #include <fmt/format.h>
 
 #include "sys/atomic_file.h"
+#include "sys/hash.h"
+#include "sys/mapped_file.h"
 
 namespace kd::scene {
 
 namespace {
 
 namespace fs = std::filesystem;
+
+/// How a file begins that has `rest` behind this.
+std::string head_of(std::string_view rest) {
+  return fmt::format("{{\n  \"generator\": \"kdtrace, XXH3 {}\",\n", hash_text(hash_bytes(rest.data(), rest.size())));
+}
 
 /// Bytes of the UTF-8 character that `text` begins with; 0 if it begins with none. No surrogates, no overlong forms.
 size_t character_length(std::string_view text) {
@@ -184,7 +191,7 @@ Result<std::string> Writer::write() {
       one(item);
     }
   };
-  put("{{\n  \"film\": {{\"width\": {}, \"height\": {}}},\n", scene_.film.width, scene_.film.height);
+  put("  \"film\": {{\"width\": {}, \"height\": {}}},\n", scene_.film.width, scene_.film.height);
   const Camera& camera = scene_.camera;
   put("  \"camera\": {{\"position\": {}, \"target\": {}, \"up\": {}, \"vertical_fov\": {}}},\n",
       vector(camera.position), vector(camera.target), vector(camera.up), number(camera.vertical_fov_degrees));
@@ -205,7 +212,7 @@ Result<std::string> Writer::write() {
   });
   put("\n  ]\n}}\n");
   if (error_) return *error_;
-  return std::move(out_);
+  return head_of(out_) + out_;
 }
 
 }  // namespace
@@ -214,6 +221,14 @@ Result<void> write_scene(const Scene& scene, const std::string& path) {
   const Result<std::string> text = Writer(scene, path).write();
   if (!text) return text.error();
   return write_file(path, *text);
+}
+
+bool is_as_written(const std::string& path) {
+  const auto file = MappedFile::open(path);
+  if (!file) return false;
+  const std::string_view text(reinterpret_cast<const char*>(file->bytes().data()), file->bytes().size());
+  const size_t length = head_of("").size();
+  return text.size() >= length && text.substr(0, length) == head_of(text.substr(length));
 }
 
 }  // namespace kd::scene

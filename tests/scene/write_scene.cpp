@@ -191,6 +191,24 @@ TEST_CASE("write_scene: what cannot be written leaves what was there") {
   CHECK(text_of(path) == "before");
 }
 
+TEST_CASE("a written scene is known as such until a byte of it changes") {
+  const test::TempFolder folder;
+  const std::string path = folder.file("scene.json");
+  CHECK_FALSE(is_as_written(path));
+  REQUIRE(write_scene(full_scene(folder), path));
+  CHECK(is_as_written(path));
+  std::ifstream in(path, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  for (size_t i = 0; i < text.size(); ++i) {
+    std::string changed = text;
+    changed[i] = static_cast<char>(changed[i] ^ 1);
+    if (is_as_written(folder.write("changed.json", changed))) FAIL("byte " << i);
+    if (is_as_written(folder.write("changed.json", text.substr(0, i)))) FAIL("length " << i);
+  }
+  CHECK_FALSE(is_as_written(folder.write("changed.json", text + "\n")));
+  CHECK(parse_scene(text, path));
+}
+
 TEST_CASE("framing: every corner is on the film, and one nearly at its edge") {
   for (const Box3d& box : {Box3d{{0, 0, 0}, {1, 1, 1}}, Box3d{{-100, 0, 5}, {100, 1, 6}}, Box3d{{0, 0, 0}, {1, 50, 1}},
                            Box3d{{-3, 2, -3}, {3, 2, 3}}, Box3d{{1e6, 1e6, 1e6}, {1e6 + 1, 1e6 + 1, 1e6 + 1}},

@@ -161,7 +161,7 @@ int run(const Options& options) {
   std::vector<Item> items = look_at(*jobs, settings);
   const Neighbours known = neighbours(items, options);
   if (auto distinct = check_distinct(known.outputs, known.inputs); !distinct) return fail(kKdbuild, distinct.error());
-  Claims claims(known);
+  Claims claims(known, options.force);
   settings.claims = &claims;
   if (options.dry_run) return tell_plan(items);
 
@@ -251,7 +251,7 @@ void add_object_options(CLI::App& c, const std::shared_ptr<Options>& options) {
 
 /// What is done, and what is told of it.
 void add_run_options(CLI::App& c, const std::shared_ptr<Options>& options) {
-  c.add_flag("--force", options->force, "Build what is up to date too");
+  c.add_flag("--force", options->force, "Build what is up to date too, and replace a scene that was written by hand");
   CLI::Option* explained = c.add_flag("--explain", options->explain,
                                       "Tell why each tree costs what it costs, and draw it beside the object, as .svg");
   CLI::Option* stats = c.add_option("--stats", options->stats, "Write a JSON report to this file, or to stdout (-)");

@@ -87,6 +87,9 @@ Result<void> SourceBuild::read(const Fingerprint& known) {
   asset_ = std::move(*asset);
   plain_ = asset_.is_plain_mesh();
   report_.warnings = asset_.warnings;
+  if (!plain_) {
+    if (auto may = claims_.check_scene(job_.scene()); !may) return may;
+  }
   std::vector<std::string> dependencies;
   for (const mesh::NamedMesh& named : asset_.meshes) {
     dependencies.insert(dependencies.end(), named.mesh.dependencies.begin(), named.mesh.dependencies.end());
@@ -218,6 +221,7 @@ Result<void> SourceBuild::compile_fitting(Lot& lot, mesh::Mesh mesh, CompileRepo
 
 /// The first half takes over what the report says of the whole: how it was read, and what was dropped.
 Result<void> SourceBuild::compile_halves(Lot& lot, mesh::Mesh mesh, CompileReport report) {
+  if (auto may = claims_.check_scene(job_.scene()); !may) return may;
   auto halves = mesh::split_in_halves(mesh);
   mesh = {};
   report.source_triangles -= halves.second.triangles.size();

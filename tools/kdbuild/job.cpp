@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "common/console.h"
+#include "scene/write_scene.h"
 
 namespace kd::tools {
 
@@ -50,6 +51,13 @@ Result<void> Claims::add(const std::vector<std::string>& outputs) {
   if (auto distinct = check_distinct(all, files_.inputs); !distinct) return distinct;
   files_.outputs = std::move(all);
   return {};
+}
+
+Result<void> Claims::check_scene(const std::string& path) const {
+  std::error_code none;
+  if (force_ || !fs::exists(path, none) || scene::is_as_written(path)) return {};
+  return Error{ErrorClass::output, path,
+               "would be replaced, but kdbuild did not write it, or it was edited since: rename it, or use --force"};
 }
 
 }  // namespace kd::tools

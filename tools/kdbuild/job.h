@@ -27,18 +27,22 @@ struct Neighbours {
   std::vector<std::string> inputs, outputs;
 };
 
-/// Who writes what: no source may write over an input or over what another one, or the run itself, writes. Shared by
-/// the sources that are built at once.
+/// Who writes what: no source may write over an input, over what another one, or the run itself, writes, or over a
+/// scene that is somebody's work. Shared by the sources that are built at once.
 class Claims {
  public:
-  explicit Claims(Neighbours known) : files_(std::move(known)) {}
+  /// `force`: scenes may be replaced, whoever wrote them.
+  explicit Claims(Neighbours known, bool force = false) : files_(std::move(known)), force_(force) {}
 
   /// Claims outputs whose names only turned out when a source was read. ErrorClass::usage if one is taken.
   Result<void> add(const std::vector<std::string>& outputs);
+  /// Whether a scene may be written to `path`: ErrorClass::output if there is one that was written or edited by hand.
+  Result<void> check_scene(const std::string& path) const;
 
  private:
   std::mutex mutex_;
   Neighbours files_;
+  const bool force_;
 };
 
 /// Whether `output` names a folder: it ends in / or is one.
