@@ -9,6 +9,7 @@
 #include "kdbuild/build_source.h"
 #include "ray_options.h"
 #include "scratch_folder.h"
+#include "sweep_check.h"
 #include "sweep_settings.h"
 #include "sys/atomic_file.h"
 #include "sys/parallel.h"
@@ -68,6 +69,7 @@ Result<void> sweep(const Options& o) {
              device->description, o.size, o.effort.repeats);
   SharedTrace shared(*camera, *size);
   Table table = empty_table();
+  HitCheck check;
   fmt::print("{}", table.head());
   for (const SweepPoint& point : *points) {
     std::fflush(stdout);
@@ -82,9 +84,13 @@ Result<void> sweep(const Options& o) {
     if (!rays) return rays.error();
     table.add(row(point, *report, *rays));
     fmt::print("{}", table.last_row());
-    if (o.csv.empty()) continue;
-    if (auto written = write_file(o.csv, table.csv()); !written) return written;
+    if (!o.csv.empty()) {
+      if (auto written = write_file(o.csv, table.csv()); !written) return written;
+    }
+    if (auto same = check.add({(*rays)[0].hit_count, (*rays)[1].hit_count, (*rays)[2].hit_count}, o.mesh); !same)
+      return same;
   }
+  fmt::print("\n{}\n", check.verdict());
   return {};
 }
 

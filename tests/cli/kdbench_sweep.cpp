@@ -1,9 +1,11 @@
 // kdbench sweep, from outside.
+#include <algorithm>
 #include <sstream>
 
 #include <doctest/doctest.h>
 
 #include "cli/run_tool.h"
+#include "sweep_check.h"
 
 using namespace kd;
 using namespace kd::test;
@@ -73,6 +75,31 @@ TEST_SUITE("kdbench sweep") {
       CHECK(std::stod(rows[i][8]) > std::stod(rows[i + 1][8]));
       CHECK(std::stod(rows[i][4]) < std::stod(rows[i + 1][4]));
     }
+  }
+
+  TEST_CASE("without lists, the default settings are among the rows, and all trees answer alike") {
+    const Terminal t;
+    const Rows rows = sweep(t, {"--costs", "1:1.5", "--bonus", "0.08"});
+    REQUIRE(rows.size() == 6);
+    const auto settings = t.report("kdbuild", {"build", data_file("icosphere.ply"), "-o", "s.nkd", "--stats", "-"});
+    CHECK(std::any_of(rows.begin() + 1, rows.end(), [&](const auto& row) {
+      return row[2] == "0.25" && std::stod(row[4]) == doctest::Approx(settings["tree"]["sah_cost"]).epsilon(1e-3);
+    }));
+    const std::string out =
+        t.succeeds("kdbench", {"sweep", data_file("icosphere.ply"), "--camera", "cam.txt", "--size", "16x16",
+                               "--device", "cpu", "--repeat", "1", "--costs", "1:1.5", "--bonus", "0.08"})
+            .out;
+    CHECK_MESSAGE(out.find("All 5 trees answer alike: ") != std::string::npos, out);
+  }
+
+  TEST_CASE("trees that do not answer alike are an error") {
+    bench::HitCheck check;
+    CHECK(check.add({5, 4, 3}, "a.ply"));
+    CHECK(check.add({5, 4, 3}, "a.ply"));
+    CHECK(check.verdict().find("All 2 trees answer alike: 5 / 4 / 3") == 0);
+    const auto other = check.add({5, 4, 2}, "a.ply");
+    REQUIRE(!other);
+    CHECK(other.error().line().find("a.ply: tree 3 answers 5 / 4 / 2") == 0);
   }
 
   TEST_CASE("errors") {
