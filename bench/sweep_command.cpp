@@ -110,7 +110,7 @@ Command sweep_command(CLI::App& app) {
   add_list("--price", o->lists.prices, "SAH costs that a byte a triangle is worth: P,P,...");
   add_list("--depth", o->lists.depths, "Depth limits, in inner nodes: N,N,...");
   add_ray_options(*c, *o);
-  c->add_option("--csv", o->csv, "Write the rows to this file too, as CSV");
+  c->add_option("--csv", o->csv, "Write the rows to this file too, as CSV")->check(tools::file_name());
   return {c, [o] {
             const auto done = sweep(*o);
             return done ? 0 : tools::fail(kKdbench, done.error());

@@ -157,6 +157,19 @@ TEST_SUITE("kdbuild build") {
     t.fails(kTool, {"build", cube, "-o", "x.nkd", "--threads", "-1"}, ErrorClass::usage, {"--threads", "-1"});
   }
 
+  TEST_CASE("a name of - is stdout for reports, and refused for what is no report") {
+    const Terminal t;
+    t.write("a.obj", kTetrahedronObj);
+    t.succeeds(kTool, {"build", "a.obj", "-o", "a.nkd"});
+    t.fails(kTool, {"info", "a.nkd", "--plot", "-"}, ErrorClass::usage, {"--plot", "stdout", "./-"});
+    t.fails(kTool, {"build", "a.obj", "-o", "-"}, ErrorClass::usage, {"--output", "stdout"});
+    t.fails(kTool, {"build", "a.obj", "-o", "b.nkd", "--depfile", "-"}, ErrorClass::usage, {"--depfile", "stdout"});
+    t.fails("kdbench", {"sweep", "a.obj", "--camera", "c", "--csv", "-"}, ErrorClass::usage, {"--csv", "stdout"});
+    CHECK(!t.exists("-"));
+    t.succeeds(kTool, {"info", "a.nkd", "--plot", "./-"});
+    CHECK(t.read("-").starts_with("<svg"));
+  }
+
   TEST_CASE("an unknown subcommand is named") {
     Terminal().fails(kTool, {"frobnicate"}, ErrorClass::usage, {"frobnicate"});
   }

@@ -78,7 +78,11 @@ CLI::Validator number(double lo, double hi) {
 }
 
 CLI::Validator file_name() {
-  return CLI::Validator([](std::string& text) -> std::string { return text.empty() ? "needs a file name" : ""; }, "");
+  const auto check = [](std::string& text) -> std::string {
+    if (text.empty()) return "needs a file name";
+    return text == "-" ? "needs a file name, and cannot be stdout: ./- is a file of that name" : "";
+  };
+  return CLI::Validator(check, "");
 }
 
 namespace {

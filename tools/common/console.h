@@ -22,7 +22,8 @@ int fail(std::string_view tool, const Error& error);
 /// Prints "tool: warning: ..." as one line to stderr.
 void warn(std::string_view tool, const std::string& text);
 
-/// Checks of an option's value that say what is wanted: a number in [lo, hi] (NaN is not), a name that is not empty.
+/// Checks of an option's value that say what is wanted: a number in [lo, hi] (NaN is not), the name of a file, which is
+/// not empty, nor "-" for stdout.
 CLI::Validator whole_number(int64_t lo, int64_t hi);
 CLI::Validator number(double lo, double hi);
 CLI::Validator file_name();
