@@ -43,11 +43,11 @@ std::string rest_of_line(std::string_view text, size_t start) {
   return line;
 }
 
-std::vector<std::string> buffer_files(std::span<const std::byte> bytes, const std::string& path) {
+std::vector<std::string> buffer_files(std::span<const std::byte> bytes, const std::string& path, Watch& watch) {
   std::vector<std::string> files;
   const auto container = open_container(bytes, path);
   if (!container) return files;
-  const auto root = parse_gltf_json(text_of(container->json), path);
+  const auto root = parse_gltf_json(text_of(container->json), path, watch);
   if (!root || !root->contains("buffers")) return files;
   for (const auto& buffer : root->at("buffers")) {
     if (!buffer.is_object() || !buffer.contains("uri") || !buffer["uri"].is_string()) continue;
@@ -61,17 +61,24 @@ std::vector<std::string> buffer_files(std::span<const std::byte> bytes, const st
 
 }  // namespace
 
-std::vector<std::string> dependencies(std::span<const std::byte> bytes, const std::string& path) {
+Result<std::vector<std::string>> dependencies(std::span<const std::byte> bytes, const std::string& path,
+                                              const Progress& progress) {
   const std::string extension = lower_case(std::filesystem::path(path).extension().string());
-  if (extension == ".obj") return mtl_files(text_of(bytes), path);
-  if (extension == ".gltf" || extension == ".glb") return buffer_files(bytes, path);
-  return {};
+  Watch watch(progress);
+  try {
+    if (extension == ".obj") return mtl_files(text_of(bytes), path, watch);
+    if (extension == ".gltf" || extension == ".glb") return buffer_files(bytes, path, watch);
+  } catch (const Cancelled&) {
+    return Error{ErrorClass::interrupted, path, "interrupted"};
+  }
+  return std::vector<std::string>();
 }
 
-std::vector<std::string> mtl_files(std::string_view text, const std::string& path) {
+std::vector<std::string> mtl_files(std::string_view text, const std::string& path, Watch& watch) {
   std::vector<std::string> files;
   Tokens tokens(text);
   do {
+    watch.step();
     if (tokens.next_in_line() != "mtllib") continue;
     const std::string list = rest_of_line(text, tokens.offset());
     if (list.empty()) continue;

@@ -8,13 +8,18 @@
 #include <string_view>
 #include <vector>
 
+#include "mesh/watch.h"
+#include "sys/result.h"
+
 namespace kd::mesh {
 
 /// The files that reading the mesh `bytes` of `path` reads as well if they are there, each once, in order of mention.
-/// Never fewer; more where an OBJ offers a second MTL for the case that the first is missing.
-std::vector<std::string> dependencies(std::span<const std::byte> bytes, const std::string& path);
+/// Never fewer; more where an OBJ offers a second MTL for the case that the first is missing. ErrorClass::interrupted
+/// if `progress`, which is asked with a share of 0, cancels.
+Result<std::vector<std::string>> dependencies(std::span<const std::byte> bytes, const std::string& path,
+                                              const Progress& progress = {});
 
-/// The same of an OBJ's text: what its mtllib lines name.
-std::vector<std::string> mtl_files(std::string_view text, const std::string& path);
+/// The same of an OBJ's text: what its mtllib lines name. Throws Cancelled.
+std::vector<std::string> mtl_files(std::string_view text, const std::string& path, Watch& watch);
 
 }  // namespace kd::mesh

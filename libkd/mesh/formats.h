@@ -1,5 +1,5 @@
 // The readers behind the table in formats.cpp. `bytes` is the whole file, `path` its name for messages and for files
-// beside it. They may throw std::bad_alloc and std::length_error, which `read_file` turns into errors.
+// beside it. They may throw std::bad_alloc, std::length_error and Cancelled, which `read_file` turns into errors.
 #pragma once
 
 #include <cstddef>
@@ -11,6 +11,7 @@
 
 #include "mesh/asset.h"
 #include "mesh/read_mesh.h"
+#include "mesh/watch.h"
 #include "sys/mapped_file.h"
 
 namespace kd::mesh {
@@ -43,6 +44,8 @@ Result<T> read_file(const std::string& path, const std::function<Result<T>(Bytes
     const Result<const Format*> format = find_format(path);
     if (!format) return format.error();
     return read(file->bytes(), **format);
+  } catch (const Cancelled&) {
+    return Error{ErrorClass::interrupted, path, "interrupted"};
   } catch (const std::bad_alloc&) {
     return Error{ErrorClass::resource, path, "out of memory while reading; split the mesh or use a larger machine"};
   } catch (const std::exception& fault) {

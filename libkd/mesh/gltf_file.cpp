@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "mesh/data_uri.h"
 #include "mesh/gltf_json.h"
 #include "mesh/text.h"
 
@@ -90,7 +91,7 @@ std::optional<std::filesystem::path> relative_file(const std::string& uri) {
 
 /// All bytes of a buffer, which may be more than it says it has.
 Result<Bytes> find_bytes(const Json& buffer, size_t index, const GltfContainer& container, const std::string& path,
-                         GltfFile& file) {
+                         GltfFile& file, Watch& watch) {
   const auto uri = buffer.find("uri");
   if (uri == buffer.end()) {
     if (index == 0 && container.binary) return *container.binary;
@@ -98,12 +99,9 @@ Result<Bytes> find_bytes(const Json& buffer, size_t index, const GltfContainer& 
   }
   const std::string& text = uri->get_ref<const std::string&>();
   if (text.starts_with("data:")) {
-    std::string media_type;
-    auto& bytes = file.decoded.emplace_back();
-    if (!tinygltf::DecodeDataURI(&bytes, media_type, text, 0, false)) {
-      return gltf_error(path, fmt::format("the data: URI of buffer {} is empty or not in base64", index));
-    }
-    return std::as_bytes(std::span(bytes));
+    auto bytes = decode_data_uri(text, watch);
+    if (!bytes) return gltf_error(path, fmt::format("the data: URI of buffer {} is empty or not in base64", index));
+    return Bytes(file.decoded.emplace_back(std::move(*bytes)));
   }
   const auto name = relative_file(text);
   if (!name) {
@@ -118,13 +116,14 @@ Result<Bytes> find_bytes(const Json& buffer, size_t index, const GltfContainer& 
   return file.mapped.emplace(*name, std::move(*mapped)).first->second.bytes();
 }
 
-Result<void> open_buffers(const Json& root, const GltfContainer& container, const std::string& path, GltfFile& file) {
+Result<void> open_buffers(const Json& root, const GltfContainer& container, const std::string& path, GltfFile& file,
+                          Watch& watch) {
   const auto buffers = root.find("buffers");
   if (buffers == root.end()) return {};
   for (const Json& buffer : *buffers) {
     const size_t index = file.buffers.size();
     if (!buffer.contains("byteLength")) return gltf_error(path, fmt::format("buffer {} has no 'byteLength'", index));
-    const Result<Bytes> bytes = find_bytes(buffer, index, container, path, file);
+    const Result<Bytes> bytes = find_bytes(buffer, index, container, path, file, watch);
     if (!bytes) return bytes.error();
     const uint64_t length = buffer.at("byteLength");
     if (length > bytes->size()) {
@@ -137,10 +136,10 @@ Result<void> open_buffers(const Json& root, const GltfContainer& container, cons
 
 }  // namespace
 
-Result<GltfFile> open_gltf(Bytes bytes, const std::string& path) {
+Result<GltfFile> open_gltf(Bytes bytes, const std::string& path, Watch& watch) {
   const Result<GltfContainer> container = open_container(bytes, path);
   if (!container) return container.error();
-  Result<Json> root = parse_gltf_json(text_of(container->json), path);
+  Result<Json> root = parse_gltf_json(text_of(container->json), path, watch);
   if (!root) return root.error();
   if (const std::string fault = find_version_fault(*root); !fault.empty()) return gltf_error(path, fault);
 
@@ -152,7 +151,7 @@ Result<GltfFile> open_gltf(Bytes bytes, const std::string& path) {
   }
   if (const std::string fault = keep_what_is_read(*root); !fault.empty()) return gltf_error(path, fault);
   if (const std::string fault = find_extension_fault(*root); !fault.empty()) return gltf_error(path, fault);
-  if (const auto opened = open_buffers(*root, *container, path, file); !opened) return opened.error();
+  if (const auto opened = open_buffers(*root, *container, path, file, watch); !opened) return opened.error();
   root->erase("buffers");
 
   const std::string text = root->dump();

@@ -18,12 +18,13 @@ struct GltfFile {
   uint64_t size = 0;           // of the file and the buffers outside it, in bytes
   std::vector<std::string> warnings;
 
-  std::map<std::string, MappedFile> mapped;         // what `buffers` points into, beside the file itself, by name
-  std::vector<std::vector<unsigned char>> decoded;  // the same, from data: URIs
+  std::map<std::string, MappedFile> mapped;     // what `buffers` points into, beside the file itself, by name
+  std::vector<std::vector<std::byte>> decoded;  // the same, from data: URIs
 };
 
 /// `bytes`, JSON or a GLB container, must outlive what is returned. Buffers may be in the container, in data: URIs or
 /// in files in or below the folder of `path`. ErrorClass::mesh, or ErrorClass::missing for a buffer's file.
-Result<GltfFile> open_gltf(Bytes bytes, const std::string& path);
+/// Throws Cancelled.
+Result<GltfFile> open_gltf(Bytes bytes, const std::string& path, Watch& watch);
 
 }  // namespace kd::mesh

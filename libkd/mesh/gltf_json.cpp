@@ -1,7 +1,9 @@
 #include "mesh/gltf_json.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstring>
+#include <iterator>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -30,10 +32,11 @@ size_t next_chunk(Bytes bytes, size_t end) {
 }
 
 /// Looked for before the text is parsed: the parser's own way to tell takes quadratic time.
-bool is_too_deep(std::string_view json) {
+bool is_too_deep(std::string_view json, Watch& watch) {
   int depth = 0;
   bool in_string = false;
   for (size_t i = 0; i < json.size() && depth <= kMostNested; ++i) {
+    watch.step();
     const char c = json[i];
     if (c == '"') in_string = !in_string;
     if (in_string) {
@@ -46,6 +49,35 @@ bool is_too_deep(std::string_view json) {
   }
   return depth > kMostNested;
 }
+
+/// The text for the parser, character by character.
+class WatchedText {
+ public:
+  using iterator_category = std::input_iterator_tag;
+  using value_type = char;
+  using difference_type = std::ptrdiff_t;
+  using pointer = const char*;
+  using reference = const char&;
+
+  WatchedText(const char* at, Watch& watch) : at_(at), watch_(&watch) {}
+
+  const char& operator*() const { return *at_; }
+  WatchedText& operator++() {
+    ++at_;
+    watch_->step();
+    return *this;
+  }
+  WatchedText operator++(int) {
+    const WatchedText old = *this;
+    ++*this;
+    return old;
+  }
+  bool operator==(const WatchedText& other) const { return at_ == other.at_; }
+
+ private:
+  const char* at_;
+  Watch* watch_;
+};
 
 }  // namespace
 
@@ -83,11 +115,12 @@ Result<GltfContainer> open_container(Bytes bytes, const std::string& path) {
   return container;
 }
 
-Result<Json> parse_gltf_json(std::string_view text, const std::string& path) {
-  if (is_too_deep(text)) return gltf_error(path, fmt::format("the JSON is nested more than {} deep", kMostNested));
+Result<Json> parse_gltf_json(std::string_view text, const std::string& path, Watch& watch) {
+  if (is_too_deep(text, watch))
+    return gltf_error(path, fmt::format("the JSON is nested more than {} deep", kMostNested));
   Json root;
   try {
-    root = Json::parse(text);
+    root = Json::parse(WatchedText(text.data(), watch), WatchedText(text.data() + text.size(), watch));
   } catch (const Json::exception& fault) {
     return gltf_error(path, fmt::format("not valid JSON: {}", fault.what()));
   }

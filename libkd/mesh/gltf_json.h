@@ -21,7 +21,8 @@ struct GltfContainer {
 Result<GltfContainer> open_container(Bytes bytes, const std::string& path);
 
 /// The JSON's root, an object. ErrorClass::mesh for what is no JSON, or too deep: a parser descends as deep as it is.
-Result<nlohmann::json> parse_gltf_json(std::string_view text, const std::string& path);
+/// Throws Cancelled.
+Result<nlohmann::json> parse_gltf_json(std::string_view text, const std::string& path, Watch& watch);
 
 /// Leaves of the root what is read of it. Returns what is of another kind than glTF says, with its JSON pointer (RFC
 /// 6901); or nothing.

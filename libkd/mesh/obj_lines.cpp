@@ -29,10 +29,11 @@ bool has_numbers(std::string_view statement) {
 
 }  // namespace
 
-std::string plain_obj_lines(std::string_view text) {
+std::string plain_obj_lines(std::string_view text, Watch& watch) {
   std::string out;
   out.reserve(text.size() + 1);
   while (!text.empty()) {
+    watch.step();
     const size_t start = out.size();
     std::string_view line = take_line(text);
     size_t joined = 0;

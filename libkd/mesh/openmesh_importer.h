@@ -10,6 +10,7 @@
 #include <OpenMesh/Core/IO/importer/BaseImporter.hh>
 
 #include "core/vec.h"
+#include "mesh/watch.h"
 
 namespace kd::mesh {
 
@@ -27,6 +28,8 @@ class OpenMeshImporter final : public OpenMesh::IO::BaseImporter {
   using Byte4 = OpenMesh::Vec4uc;
 
  public:
+  explicit OpenMeshImporter(Watch& watch) : watch_(watch) {}
+
   std::vector<Vec3d> positions;
   std::vector<Vec3d> normals;     // one per position, or none; as long as in the file
   std::vector<int32_t> corners;   // of all faces, unchecked
@@ -40,6 +43,7 @@ class OpenMeshImporter final : public OpenMesh::IO::BaseImporter {
   void set_normal(Vertex v, const Float3& n) override { keep_normal(v, {n[0], n[1], n[2]}); }
   void set_normal(Vertex v, const Double3& n) override { keep_normal(v, {n[0], n[1], n[2]}); }
   Face add_face(const VHandles& vertices) override {
+    watch_.step();
     for (const Vertex v : vertices) corners.push_back(v.idx());
     face_ends.push_back(corners.size());
     return Face(static_cast<int>(face_ends.size() - 1));
@@ -90,6 +94,7 @@ class OpenMeshImporter final : public OpenMesh::IO::BaseImporter {
  private:
   static size_t index(Vertex v) { return static_cast<size_t>(v.idx()); }
   Vertex add(Vec3d p) {
+    watch_.step();
     positions.push_back(p);
     return Vertex(static_cast<int>(positions.size() - 1));
   }
@@ -97,6 +102,8 @@ class OpenMeshImporter final : public OpenMesh::IO::BaseImporter {
     normals.resize(positions.size());
     normals[index(v)] = n;
   }
+
+  Watch& watch_;
 };
 
 }  // namespace kd::mesh

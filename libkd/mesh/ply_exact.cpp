@@ -15,11 +15,12 @@ int axis_of(const PlyHeader::Property& property) {
   return property.name == "x" ? 0 : property.name == "y" ? 1 : property.name == "z" ? 2 : -1;
 }
 
-void restore_text(const PlyHeader& header, std::string_view data, std::vector<Vec3d>& positions) {
+void restore_text(const PlyHeader& header, std::string_view data, std::vector<Vec3d>& positions, Watch& watch) {
   Tokens tokens(data);
   for (const auto& element : header.elements) {
     const bool is_vertex = element.name == "vertex";
     for (uint64_t i = 0; i < element.count; ++i) {
+      watch.step();
       for (const auto& property : element.properties) {
         const std::string_view token = tokens.next();
         const int axis = is_vertex ? axis_of(property) : -1;
@@ -38,12 +39,13 @@ double load(const char* from, bool big_endian) {
   return std::bit_cast<double>(raw);
 }
 
-void restore_binary(const PlyHeader& header, std::string_view data, std::vector<Vec3d>& positions) {
+void restore_binary(const PlyHeader& header, std::string_view data, std::vector<Vec3d>& positions, Watch& watch) {
   const bool big_endian = header.format == "binary_big_endian";
   const char* at = data.data();
   for (const auto& element : header.elements) {
     const bool is_vertex = element.name == "vertex";
     for (uint64_t i = 0; i < element.count; ++i) {
+      watch.step();
       for (const auto& property : element.properties) {
         const int axis = is_vertex ? axis_of(property) : -1;
         if (axis >= 0) positions[i].set(axis, load(at, big_endian));
@@ -56,10 +58,11 @@ void restore_binary(const PlyHeader& header, std::string_view data, std::vector<
 
 }  // namespace
 
-void restore_doubles(const PlyHeader& header, std::string_view data, std::vector<Vec3d>& positions) {
+void restore_doubles(const PlyHeader& header, std::string_view data, std::vector<Vec3d>& positions, Watch& watch) {
   const auto& properties = header.find("vertex")->properties;
   if (std::none_of(properties.begin(), properties.end(), [](const auto& p) { return axis_of(p) >= 0; })) return;
-  return header.is_text() ? restore_text(header, data, positions) : restore_binary(header, data, positions);
+  return header.is_text() ? restore_text(header, data, positions, watch)
+                          : restore_binary(header, data, positions, watch);
 }
 
 }  // namespace kd::mesh

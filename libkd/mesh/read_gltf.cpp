@@ -65,8 +65,8 @@ struct LeftOut {
 
 class MeshReader {
  public:
-  MeshReader(const GltfFile& file, const std::string& path)
-      : file_(file), path_(path), corners_left_(std::max(kFreeCorners, file.size * kCornersPerByte)) {}
+  MeshReader(const GltfFile& file, const std::string& path, Watch& watch)
+      : file_(file), path_(path), watch_(watch), corners_left_(std::max(kFreeCorners, file.size * kCornersPerByte)) {}
 
   LeftOut left_out;
 
@@ -84,6 +84,7 @@ class MeshReader {
 
   const GltfFile& file_;
   const std::string& path_;
+  Watch& watch_;
   uint64_t corners_left_;
 
   MeshBuilder builder_;  // of the current mesh, as what follows
@@ -191,6 +192,7 @@ Result<void> MeshReader::read_primitive(const tinygltf::Primitive& source) {
 
   vertices_->resize(positions_->count(), kNoIndex);
   for (uint64_t i = 0; i < triangles; ++i) {
+    watch_.step();
     const uint64_t odd = i & 1;
     const auto added = is_fan     ? add_triangle({i + 1, i + 2, 0}, *material)
                        : is_strip ? add_triangle({i, i + 1 + odd, i + 2 - odd}, *material)
@@ -224,12 +226,13 @@ Result<Mesh> MeshReader::read(const tinygltf::Mesh& source) {
 
 }  // namespace
 
-Result<Asset> read_gltf(Bytes bytes, const std::string& path, const ReadOptions&) {
-  const Result<GltfFile> file = open_gltf(bytes, path);
+Result<Asset> read_gltf(Bytes bytes, const std::string& path, const ReadOptions& options) {
+  Watch watch(options.progress);
+  const Result<GltfFile> file = open_gltf(bytes, path, watch);
   if (!file) return file.error();
   Asset asset;
   asset.warnings = file->warnings;
-  MeshReader reader(*file, path);
+  MeshReader reader(*file, path, watch);
   FileNames names;
   std::vector<uint32_t> mesh_of;
   for (const tinygltf::Mesh& source : file->model.meshes) {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "mesh/mesh.h"
+#include "sys/progress.h"
 #include "sys/result.h"
 
 namespace kd::mesh {
@@ -12,6 +13,8 @@ namespace kd::mesh {
 struct ReadOptions {
   /// MTL: ambient := diffuse, whatever Ka says; many exporters write 0 or 1 without meaning it.
   bool ambient_from_diffuse = false;
+  /// Asked now and then, with a share of 0, by the calling thread; to cancel takes less than 100 ms, on any file.
+  Progress progress{};
 };
 
 /// The mesh in `path`, whose extension (in any case) names the format; glTF, which holds more than one, is left to
@@ -21,6 +24,7 @@ struct ReadOptions {
 /// threads at once.
 /// ErrorClass::missing: no such file, or not one that can be read. ErrorClass::mesh: an unknown extension, a file that
 /// does not parse, a face with a vertex that is not there, no face at all. ErrorClass::resource: memory ran out.
+/// ErrorClass::interrupted: cancelled.
 Result<Mesh> read_mesh(const std::string& path, const ReadOptions& options);
 
 /// The extensions and what they stand for, for messages: ".obj (Wavefront OBJ), ...".

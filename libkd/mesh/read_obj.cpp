@@ -36,13 +36,14 @@ bool has_long_index(std::string_view corner) {
 }
 
 /// Also looks at the f lines, for indices that tinyobjloader cannot hold.
-Result<Vertices> read_vertices(std::string_view text, const std::string& path) {
+Result<Vertices> read_vertices(std::string_view text, const std::string& path, Watch& watch) {
   Vertices vertices;
   Tokens tokens(text);
   const auto failed = [&](const std::string& what) {
     return Error{ErrorClass::mesh, fmt::format("{}:{}", path, tokens.line()), what + "; export the mesh again"};
   };
   do {
+    watch.step();
     const std::string_view keyword = tokens.next_in_line();
     if (keyword == "f") {
       for (std::string_view corner = tokens.next_in_line(); !corner.empty(); corner = tokens.next_in_line()) {
@@ -76,7 +77,7 @@ uint64_t face_line(std::string_view text, uint64_t count) {
 
 /// What tinyobjloader's callbacks fill.
 struct Reading {
-  explicit Reading(MtlReader reader) : materials(std::move(reader)) { enter_group(""); }
+  Reading(MtlReader reader, Watch& w) : watch(w), materials(std::move(reader)) { enter_group(""); }
 
   /// Groups and objects of one name are one; those without a name, and what stands before any, are "default".
   void enter_group(const std::string& name) {
@@ -87,6 +88,7 @@ struct Reading {
     group = entry->second;
   }
 
+  Watch& watch;
   MeshBuilder builder;
   std::vector<uint32_t> normal_of;  // per vn line: the index in the mesh's normals
   MtlReader materials;
@@ -109,6 +111,7 @@ int64_t from_zero(int index, int64_t count) { return index > 0 ? int64_t{index} 
 
 void take_face(void* user, tinyobj::index_t* indices, int count) {
   Reading& r = *static_cast<Reading*>(user);
+  r.watch.step();
   if (!r.fault.empty()) return;
   r.corners.clear();
   for (const tinyobj::index_t& index : std::span(indices, static_cast<size_t>(count))) {
@@ -186,20 +189,29 @@ Result<void> place_materials(Reading& r, const std::string& path) {
 }  // namespace
 
 Result<Mesh> read_obj(Bytes bytes, const std::string& path, const ReadOptions& options) {
-  std::istringstream in(plain_obj_lines(text_of(bytes)));
+  Watch watch(options.progress);
+  std::istringstream in(plain_obj_lines(text_of(bytes), watch));
   const std::string_view text = in.view();
-  Result<Vertices> vertices = read_vertices(text, path);
+  Result<Vertices> vertices = read_vertices(text, path, watch);
   if (!vertices) return vertices.error();
 
-  Reading reading(MtlReader(path, options.ambient_from_diffuse));
+  Reading reading(MtlReader(path, options.ambient_from_diffuse), watch);
   reading.builder.mesh.positions = std::move(vertices->positions);
   for (const Vec3d& normal : vertices->normals) {
+    watch.step();
     reading.normal_of.push_back(add_normal(reading.builder.mesh, normal));
   }
   tinyobj::callback_t callbacks;
   using Real = tinyobj::real_t;
-  callbacks.vertex_cb = [](void* user, Real, Real, Real, Real) { ++static_cast<Reading*>(user)->positions; };
-  callbacks.normal_cb = [](void* user, Real, Real, Real) { ++static_cast<Reading*>(user)->normals; };
+  callbacks.vertex_cb = [](void* user, Real, Real, Real, Real) {
+    ++static_cast<Reading*>(user)->positions;
+    static_cast<Reading*>(user)->watch.step();
+  };
+  callbacks.normal_cb = [](void* user, Real, Real, Real) {
+    ++static_cast<Reading*>(user)->normals;
+    static_cast<Reading*>(user)->watch.step();
+  };
+  callbacks.texcoord_cb = [](void* user, Real, Real, Real) { static_cast<Reading*>(user)->watch.step(); };
   callbacks.index_cb = take_face;
   callbacks.usemtl_cb = take_material;
   callbacks.group_cb = take_group;
@@ -215,7 +227,7 @@ Result<Mesh> read_obj(Bytes bytes, const std::string& path, const ReadOptions& o
     reading.builder.mesh.group_names.clear();
     reading.builder.mesh.group_ids.clear();
   }
-  reading.builder.mesh.dependencies = mtl_files(text, path);
+  reading.builder.mesh.dependencies = mtl_files(text, path, watch);
   return std::move(reading.builder).finish(path);
 }
 

@@ -42,9 +42,10 @@ class OffLines {
   uint64_t ended_line_ = 0;
 };
 
-Result<void> read_vertices(OffLines& lines, uint64_t count, std::vector<Vec3d>& positions) {
+Result<void> read_vertices(OffLines& lines, uint64_t count, std::vector<Vec3d>& positions, Watch& watch) {
   positions.reserve(count);
   for (uint64_t i = 0; i < count; ++i) {
+    watch.step();
     Vec3d p;
     for (int axis = 0; axis < 3; ++axis) {
       const std::string_view token = axis == 0 ? lines.next() : lines.next_in_line();
@@ -58,9 +59,10 @@ Result<void> read_vertices(OffLines& lines, uint64_t count, std::vector<Vec3d>& 
   return {};
 }
 
-Result<void> read_faces(OffLines& lines, uint64_t count, MeshBuilder& builder) {
+Result<void> read_faces(OffLines& lines, uint64_t count, MeshBuilder& builder, Watch& watch) {
   std::vector<MeshBuilder::Corner> corners;
   for (uint64_t i = 0; i < count; ++i) {
+    watch.step();
     const auto size = parse_count(lines.next());
     if (!size) return lines.failed(fmt::format("face {} has no number of corners", i));
     corners.clear();
@@ -77,7 +79,8 @@ Result<void> read_faces(OffLines& lines, uint64_t count, MeshBuilder& builder) {
 
 }  // namespace
 
-Result<Mesh> read_off(Bytes bytes, const std::string& path, const ReadOptions&) {
+Result<Mesh> read_off(Bytes bytes, const std::string& path, const ReadOptions& options) {
+  Watch watch(options.progress);
   OffLines lines(text_of(bytes), path);
   std::string_view keyword = lines.next();
   // [ST][C][N][4][n]OFF: what comes before OFF says what a vertex has besides; 4 and n change what its numbers mean.
@@ -94,8 +97,8 @@ Result<Mesh> read_off(Bytes bytes, const std::string& path, const ReadOptions&) 
   lines.skip_rest();
 
   MeshBuilder builder;
-  if (const auto read = read_vertices(lines, *vertices, builder.mesh.positions); !read) return read.error();
-  if (const auto read = read_faces(lines, *faces, builder); !read) return read.error();
+  if (const auto read = read_vertices(lines, *vertices, builder.mesh.positions, watch); !read) return read.error();
+  if (const auto read = read_faces(lines, *faces, builder, watch); !read) return read.error();
   return std::move(builder).finish(path);
 }
 

@@ -97,10 +97,15 @@ std::string plain_header(const PlyHeader& header) {
 
 /// Runs OpenMesh over `data`, what follows the header.
 Result<void> run_openmesh(const PlyHeader& header, std::string_view data, const std::string& path,
-                          OpenMeshImporter& importer) {
+                          OpenMeshImporter& importer, Watch& watch) {
   std::string text = plain_header(header);
   const size_t header_size = text.size();
-  text += data;
+  text.reserve(header_size + data.size() + 1);
+  constexpr size_t kPiece = size_t{1} << 24;
+  for (size_t at = 0; at < data.size(); at += kPiece) {
+    text += data.substr(at, kPiece);
+    watch.look();
+  }
   if (header.is_text()) text += '\n';  // the end of the file is then never the end of a number
   std::istringstream in(std::move(text), std::ios::in | std::ios::binary);
   bool complete = false;
@@ -131,24 +136,29 @@ Result<void> run_openmesh(const PlyHeader& header, std::string_view data, const 
 
 }  // namespace
 
-Result<Mesh> read_ply(Bytes bytes, const std::string& path, const ReadOptions&) {
+Result<Mesh> read_ply(Bytes bytes, const std::string& path, const ReadOptions& options) {
+  Watch watch(options.progress);
   const std::string_view text = text_of(bytes);
   const Result<PlyHeader> header = read_ply_header(text, path);
   if (!header) return header.error();
   if (const std::string fault = find_fault(*header); !fault.empty()) return Error{ErrorClass::mesh, path, fault};
   const std::string_view data = text.substr(header->size);
 
-  OpenMeshImporter importer;
-  if (const auto done = run_openmesh(*header, data, path, importer); !done) return done.error();
+  OpenMeshImporter importer(watch);
+  if (const auto done = run_openmesh(*header, data, path, importer, watch); !done) return done.error();
   MeshBuilder builder;
   builder.mesh.positions = std::move(importer.positions);
-  restore_doubles(*header, data, builder.mesh.positions);
+  restore_doubles(*header, data, builder.mesh.positions, watch);
 
   std::vector<uint32_t> normal_of(importer.normals.size());
-  for (size_t i = 0; i < normal_of.size(); ++i) normal_of[i] = add_normal(builder.mesh, importer.normals[i]);
+  for (size_t i = 0; i < normal_of.size(); ++i) {
+    watch.step();
+    normal_of[i] = add_normal(builder.mesh, importer.normals[i]);
+  }
   std::vector<MeshBuilder::Corner> corners;
   size_t first = 0;
   for (const size_t end : importer.face_ends) {
+    watch.step();
     corners.clear();
     for (; first < end; ++first) {
       const auto position = importer.corners[first];

@@ -35,10 +35,11 @@ Result<void> add_last(MeshBuilder& builder, size_t size) {
   return builder.add_face(corners);
 }
 
-Result<void> read_binary(Bytes bytes, MeshBuilder& builder) {
+Result<void> read_binary(Bytes bytes, MeshBuilder& builder, Watch& watch) {
   const uint64_t facets = claimed_facets(bytes);
   builder.mesh.positions.reserve(3 * facets);
   for (uint64_t facet = 0; facet < facets; ++facet) {
+    watch.step();
     const std::byte* at = bytes.data() + kHeaderSize + facet * kFacetSize + 12;
     for (int corner = 0; corner < 3; ++corner, at += 12) {
       builder.mesh.positions.push_back({load_float(at), load_float(at + 4), load_float(at + 8)});
@@ -49,7 +50,7 @@ Result<void> read_binary(Bytes bytes, MeshBuilder& builder) {
 }
 
 /// Keywords count where a line starts, so a solid's name may be any.
-Result<void> read_text(std::string_view text, MeshBuilder& builder, const std::string& path) {
+Result<void> read_text(std::string_view text, MeshBuilder& builder, const std::string& path, Watch& watch) {
   Tokens tokens(text);
   const auto failed = [&](std::string_view what) {
     return Error{ErrorClass::mesh, fmt::format("{}:{}", path, tokens.line()),
@@ -58,6 +59,7 @@ Result<void> read_text(std::string_view text, MeshBuilder& builder, const std::s
   size_t corners = 0;
   bool ended = false;
   do {
+    watch.step();
     const std::string word = lower_case(tokens.next_in_line());
     if (word == "vertex") {
       Vec3d p;
@@ -80,38 +82,42 @@ Result<void> read_text(std::string_view text, MeshBuilder& builder, const std::s
   return ended ? Result<void>{} : failed("no endsolid: truncated");
 }
 
-void weld_corners(Mesh& mesh) {
-  const std::vector<uint32_t> first_of = weld(mesh.positions);
+void weld_corners(Mesh& mesh, Watch& watch) {
+  const std::vector<uint32_t> first_of = weld(mesh.positions, watch);
   std::vector<uint32_t> index_of(first_of.size());
   uint32_t kept = 0;
   for (uint32_t i = 0; i < first_of.size(); ++i) {
+    watch.step();
     index_of[i] = first_of[i] == i ? kept : index_of[first_of[i]];
     if (first_of[i] == i) mesh.positions[kept++] = mesh.positions[i];
   }
   mesh.positions.resize(kept);
   for (auto& triangle : mesh.triangles) {
+    watch.step();
     for (uint32_t& corner : triangle) corner = index_of[corner];
   }
 }
 
 }  // namespace
 
-Result<Mesh> read_stl(Bytes bytes, const std::string& path, const ReadOptions&) {
+Result<Mesh> read_stl(Bytes bytes, const std::string& path, const ReadOptions& options) {
+  Watch watch(options.progress);
   const std::string_view text = text_of(bytes);
   const bool is_text = lower_case(text.substr(0, 5)) == "solid";
   const uint64_t binary_size = kHeaderSize + claimed_facets(bytes) * kFacetSize;
   MeshBuilder builder;
   if (bytes.size() == binary_size || (!is_text && bytes.size() > binary_size && bytes.size() >= kHeaderSize)) {
-    if (const auto read = read_binary(bytes, builder); !read) return Error{ErrorClass::mesh, path, read.error().what};
+    if (const auto read = read_binary(bytes, builder, watch); !read)
+      return Error{ErrorClass::mesh, path, read.error().what};
   } else if (is_text) {
-    if (const auto read = read_text(text, builder, path); !read) return read.error();
+    if (const auto read = read_text(text, builder, path, watch); !read) return read.error();
   } else {
     return Error{ErrorClass::mesh, path,
                  fmt::format("neither text nor binary STL of the size it claims ({} bytes, but the file has {}): "
                              "truncated or damaged, export it again",
                              binary_size, bytes.size())};
   }
-  weld_corners(builder.mesh);
+  weld_corners(builder.mesh, watch);
   return std::move(builder).finish(path);
 }
 

@@ -293,6 +293,18 @@ TEST_SUITE("kdbuild build") {
       t.fails(kTool, {"build", "grid.ply", "-o", "x.nkd", "--threads", "1"}, ErrorClass::interrupted, {"grid.ply"},
               conditions);
     }
+    // Text of some seconds' reading.
+    std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    for (int i = 0; i < 6'000'000; ++i) text += "f 1 2 3\n";
+    t.write("long.obj", text);
+    for (const int after : {100, 300, 700}) {
+      Conditions conditions;
+      conditions.signal = SIGINT;
+      conditions.signal_after = std::chrono::milliseconds(after);
+      const auto start = std::chrono::steady_clock::now();
+      t.fails(kTool, {"build", "long.obj", "-o", "x.nkd"}, ErrorClass::interrupted, {"long.obj"}, conditions);
+      CHECK(std::chrono::steady_clock::now() - start < conditions.signal_after + std::chrono::seconds(1));
+    }
     Conditions killed;
     killed.signal = SIGKILL;
     killed.signal_after = std::chrono::milliseconds(500);

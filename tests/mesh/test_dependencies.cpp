@@ -12,7 +12,9 @@ using Files = std::vector<std::string>;
 namespace {
 
 Files files_of(const std::string& text, const std::string& path) {
-  return dependencies(std::as_bytes(std::span(text)), path);
+  const auto files = dependencies(std::as_bytes(std::span(text)), path);
+  REQUIRE(files);
+  return *files;
 }
 
 }  // namespace

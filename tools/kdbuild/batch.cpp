@@ -18,7 +18,7 @@ bool is_wanted(Item& item) {
 
 void look_at(Item& item, const BatchSettings& settings) {
   if (!is_wanted(item)) return;
-  auto print = fingerprint(item.job.input);
+  auto print = fingerprint(item.job.input, [](double) { return !interrupted(); });
   if (!print) {
     item.error = print.error();
     return;

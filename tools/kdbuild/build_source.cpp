@@ -82,7 +82,7 @@ Result<SourceReport> SourceBuild::run(const Fingerprint& known) {
 
 Result<void> SourceBuild::read(const Fingerprint& known) {
   Timer timer;
-  auto asset = mesh::read_asset(job_.input, {settings_.ambient_from_diffuse}, settings_.split);
+  auto asset = mesh::read_asset(job_.input, {settings_.ambient_from_diffuse, progress_}, settings_.split);
   if (!asset) return asset.error();
   asset_ = std::move(*asset);
   plain_ = asset_.is_plain_mesh();
@@ -94,7 +94,7 @@ Result<void> SourceBuild::read(const Fingerprint& known) {
   for (const mesh::NamedMesh& named : asset_.meshes) {
     dependencies.insert(dependencies.end(), named.mesh.dependencies.begin(), named.mesh.dependencies.end());
   }
-  auto whole = extended(job_.input, known, dependencies);
+  auto whole = extended(job_.input, known, dependencies, progress_);
   if (!whole) return whole.error();
   source_hash_ = whole->hash;
   report_.files = std::move(whole->files);
@@ -298,7 +298,7 @@ Result<SourceReport> build_source(const Job& job, const Fingerprint& known, cons
 
 Result<CompileReport> build_object(const std::string& input, const std::string& object, const CompileSettings& settings,
                                    const Progress& progress) {
-  auto source = fingerprint(input);
+  auto source = fingerprint(input, progress);
   if (!source) return source.error();
   Claims claims({{input}, {}});
   auto report = build_source({input, object}, *source, settings, claims, progress);
