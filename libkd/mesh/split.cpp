@@ -139,4 +139,30 @@ std::pair<Mesh, Mesh> split_in_halves(const Mesh& mesh) {
   return {extractor.take(low), extractor.take(high)};
 }
 
+Mesh neighbourhood(const Mesh& mesh, uint32_t seed, size_t count) {
+  const Vec3d centre = centroid(mesh, mesh.triangles[seed]);
+  std::vector<float> distances(mesh.triangles.size());
+  for (size_t t = 0; t < distances.size(); ++t) {
+    const Vec3d d = centroid(mesh, mesh.triangles[t]) - centre;
+    distances[t] = static_cast<float>(std::max({std::fabs(d.x), std::fabs(d.y), std::fabs(d.z)}));
+  }
+  std::vector<uint32_t> nearest;
+  if (count < distances.size()) {
+    std::vector<float> order = distances;
+    const auto last = order.begin() + static_cast<std::ptrdiff_t>(count);
+    std::nth_element(order.begin(), last, order.end());
+    const auto is_nearer = [&](float d) { return d < *last; };
+    size_t ties = count - static_cast<size_t>(std::count_if(distances.begin(), distances.end(), is_nearer));
+    for (uint32_t t = 0; t < distances.size(); ++t) {
+      const bool is_tie = distances[t] == *last && ties > 0;
+      if (is_tie) --ties;
+      if (is_tie || is_nearer(distances[t])) nearest.push_back(t);
+    }
+  } else {
+    nearest.resize(distances.size());
+    std::iota(nearest.begin(), nearest.end(), 0u);
+  }
+  return Extractor(mesh).take(nearest);
+}
+
 }  // namespace kd::mesh

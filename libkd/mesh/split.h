@@ -27,4 +27,8 @@ std::vector<MeshPart> split_by_material(const Mesh& mesh);
 /// two triangles or more. O(N).
 std::pair<Mesh, Mesh> split_in_halves(const Mesh& mesh);
 
+/// The `count` triangles whose centroids are nearest to that of triangle `seed`, by their largest difference along an
+/// axis; all if there are no more. Of those equally near, earlier ones. O(N).
+Mesh neighbourhood(const Mesh& mesh, uint32_t seed, size_t count);
+
 }  // namespace kd::mesh

@@ -1,4 +1,5 @@
 // kdbuild build: the settings that shape objects, and sources that become several.
+#include <cmath>
 #include <filesystem>
 #include <set>
 
@@ -7,6 +8,11 @@
 #include "cli/json_schema.h"
 #include "cli/meshes.h"
 #include "cli/run_tool.h"
+#include "kdbuild/build_source.h"
+#include "kdbuild/estimate.h"
+#include "mesh/normalise.h"
+#include "mesh/read_mesh.h"
+#include "support/temp_folder.h"
 
 using namespace kd;
 using namespace kd::test;
@@ -267,9 +273,9 @@ TEST_SUITE("kdbuild build --max-object-size") {
   TEST_CASE("what is too large for one object becomes several on one lattice, and says so") {
     const Terminal t;
     t.write("grid.ply", grid_ply(60));
-    const Arguments build{"build", "grid.ply", "-o", "out/", "--max-object-size", "120000"};
+    const Arguments build{"build", "grid.ply", "-o", "out/", "--max-object-size", "90000"};
     const ToolRun run = t.succeeds(kTool, build);
-    CHECK_MESSAGE(has(run.out, "grid.ply is too large for one object of 120000 bytes: split into "), run.out);
+    CHECK_MESSAGE(has(run.out, "grid.ply is too large for one object of 90000 bytes: split into "), run.out);
     const auto scene = nlohmann::json::parse(t.read("out/grid.json"));
     const size_t count = scene["objects"].size();
     CHECK(count >= 3);
@@ -278,7 +284,7 @@ TEST_SUITE("kdbuild build --max-object-size") {
     std::set<std::string> lattices;
     for (size_t i = 0; i < count; ++i) {
       const std::string file = "out/grid." + std::to_string(i) + ".nkd";
-      CHECK(t.read(file).size() <= 120000);
+      CHECK(t.read(file).size() <= 90000);
       const auto piece = info(t, file);
       triangles += piece["triangles"].get<size_t>();
       lattices.insert(piece["lattice"].dump());
@@ -301,6 +307,56 @@ TEST_SUITE("kdbuild build --max-object-size") {
     CHECK_MESSAGE(has(run.out, "split into 2 objects"), run.out);
     CHECK(t.read("out/grid.0.nkd").size() + t.read("out/grid.1.nkd").size() > whole / 2);
     CHECK(std::distance(std::filesystem::directory_iterator(t.path("out")), {}) == 3);
+  }
+
+  TEST_CASE("samples tell what a tree will take, at any price of memory") {
+    const TempFolder folder;
+    auto mesh = mesh::read_mesh(folder.write("grid.ply", grid_ply(200)), {});
+    REQUIRE(mesh);
+    const Box3d box = mesh::bounds(*mesh);
+    const mesh::LatticeMesh on_lattice = mesh::normalise(*mesh, 21, box);
+    double dearest = 1e300;
+    for (const double price : {0.0, 0.02, 0.25, 1.0}) {
+      build::BuildSettings settings;
+      settings.costs.byte_price = price;
+      const auto sampled = tools::sampled_tree_bytes(*mesh, box, 21, settings, {});
+      const auto tree = build::build_tree(on_lattice.lattice, on_lattice.vertices, on_lattice.triangles, settings);
+      REQUIRE(sampled);
+      REQUIRE(tree);
+      const auto bytes = static_cast<double>(tree->nodes.size() * sizeof(Node) + tree->references.size() * 4);
+      CHECK(bytes < dearest);
+      CHECK(static_cast<double>(*sampled) > 1.0 * bytes);
+      CHECK(static_cast<double>(*sampled) < 1.5 * bytes);
+      dearest = bytes;
+      const tools::SizeEstimate size = tools::estimated_size(*mesh, 21);
+      CHECK(static_cast<double>(size.least_tree) < bytes);
+      CHECK(static_cast<double>(size.most_tree) > bytes);
+      // A whole object is what was said, a few kilobytes apart.
+      const auto report = tools::build_object(folder.file("grid.ply"), folder.file("x.nkd"), [&] {
+        tools::CompileSettings all;
+        all.tree = settings;
+        return all;
+      }());
+      REQUIRE(report);
+      CHECK(std::fabs(static_cast<double>(report->bytes - size.rest) - bytes) < 8192);
+    }
+    const auto cancelled = tools::sampled_tree_bytes(*mesh, box, 21, {}, [](double) { return false; });
+    REQUIRE_FALSE(cancelled);
+    CHECK(cancelled.error().error_class == ErrorClass::interrupted);
+  }
+
+  TEST_CASE("a large mesh is split as it must be, whatever memory is worth") {
+    const Terminal t;
+    t.write("grid.ply", grid_ply(520));  // 540 800 triangles: samples decide
+    const uint64_t limit = 14'000'000;
+    const auto pieces = [&](const char* price) {
+      const auto report = t.report(kTool, {"build", "grid.ply", "-o", "out/", "--force", "--byte-price", price,
+                                           "--max-object-size", std::to_string(limit), "--stats", "-"});
+      for (const auto& object : report["objects"]) CHECK(object["bytes"]["total"].get<uint64_t>() <= limit);
+      return report["objects"].size();
+    };
+    CHECK(pieces("0.25") == 2);
+    CHECK(pieces("0") >= 2);
   }
 
   TEST_CASE("one that fits is one object, whose settings say what it was allowed") {

@@ -101,3 +101,30 @@ TEST_CASE("normalise: parts in the box of the whole share its lattice, bit for b
     CHECK(normalise(whole, bits, box).vertices == all.vertices);
   }
 }
+
+TEST_CASE("split: a neighbourhood is the nearest triangles, in order") {
+  const Mesh mesh = sheet(20, 0.37);
+  const auto centre = [&](uint32_t t) {
+    const auto& c = mesh.triangles[t];
+    return (mesh.positions[c[0]] + mesh.positions[c[1]] + mesh.positions[c[2]]) * (1.0 / 3);
+  };
+  for (const uint32_t seed : {0u, 399u, 799u}) {
+    const auto distance = [&](uint32_t t) {
+      const Vec3d d = centre(t) - centre(seed);
+      return std::max({std::fabs(d.x), std::fabs(d.y), std::fabs(d.z)});
+    };
+    for (const size_t count : {1u, 7u, 100u, 800u, 5000u}) {
+      const Mesh near = neighbourhood(mesh, seed, count);
+      const std::vector<uint32_t>& taken = near.source_primitives;
+      REQUIRE(taken.size() == std::min(count, mesh.triangles.size()));
+      CHECK(std::is_sorted(taken.begin(), taken.end()));
+      CHECK(std::binary_search(taken.begin(), taken.end(), seed));
+      double furthest = 0;
+      for (const uint32_t t : taken) furthest = std::max(furthest, distance(t));
+      size_t nearer = 0;
+      for (uint32_t t = 0; t < mesh.triangles.size(); ++t) nearer += distance(t) < furthest - 1e-6;
+      CHECK(nearer <= taken.size());
+      CHECK(near.positions[near.triangles[0][0]] == mesh.positions[mesh.triangles[taken[0]][0]]);
+    }
+  }
+}

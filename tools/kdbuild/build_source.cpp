@@ -8,6 +8,7 @@
 
 #include "common/console.h"
 #include "kdbuild/asset_scene.h"
+#include "kdbuild/estimate.h"
 #include "kdbuild/freshness.h"
 #include "mesh/normalise.h"
 #include "mesh/split.h"
@@ -48,6 +49,7 @@ class SourceBuild {
   Result<void> choose_lattices();
   Result<void> choose_bits(std::span<Lot> lots);
   Result<void> compile_all();
+  Result<bool> seems_to_fit(const Lot& lot, const mesh::Mesh& mesh);
   Result<void> compile_fitting(Lot& lot, mesh::Mesh mesh, CompileReport report, bool is_piece);
   Result<void> compile_halves(Lot& lot, mesh::Mesh mesh, CompileReport report);
   Result<void> compile_one(Lot& lot, const mesh::Mesh& mesh, CompileReport report, bool is_piece);
@@ -205,11 +207,23 @@ Result<void> SourceBuild::compile_all() {
   return {};
 }
 
-/// As one object if that is small enough, else in halves. What the estimate lets through and is too large after all
-/// has been built in vain.
+/// Whether a mesh seems to fit into one object. Where that is in doubt and building would take long, samples decide.
+Result<bool> SourceBuild::seems_to_fit(const Lot& lot, const mesh::Mesh& mesh) {
+  const SizeEstimate size = estimated_size(mesh, lot.bits);
+  const uint64_t limit = settings_.max_object_size;
+  if (size.rest + size.least_tree > limit) return false;
+  if (size.rest + size.most_tree <= limit || mesh.triangles.size() < kWorthSampling) return true;
+  const auto tree = sampled_tree_bytes(mesh, lot.box, lot.bits, settings_.tree, progress_);
+  if (!tree) return Error{tree.error().error_class, lot.where, tree.error().what};
+  return size.rest + *tree <= limit;
+}
+
+/// As one object if that is small enough, else in halves. What seemed to fit and is too large after all has been built
+/// in vain.
 Result<void> SourceBuild::compile_fitting(Lot& lot, mesh::Mesh mesh, CompileReport report, bool is_piece) {
-  const bool too_large = estimated_bytes(mesh, lot.bits) > settings_.max_object_size;
-  if (!too_large || mesh.triangles.size() == 1) {
+  const Result<bool> fits = seems_to_fit(lot, mesh);
+  if (!fits) return fits.error();
+  if (*fits || mesh.triangles.size() == 1) {
     const uint64_t triangles = mesh.triangles.size();
     auto done = compile_one(lot, mesh, report, is_piece);
     const bool final = done || done.error().error_class != ErrorClass::resource || triangles == 1;

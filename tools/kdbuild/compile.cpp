@@ -1,6 +1,5 @@
 #include "kdbuild/compile.h"
 
-#include <algorithm>
 #include <bit>
 
 #include <fmt/format.h>
@@ -108,23 +107,6 @@ Result<AtomicFile> compile(const mesh::Mesh& mesh, const ObjectTarget& target, c
   report.bytes = *written;
   report.seconds.write = timer.lap();
   return file;
-}
-
-uint64_t estimated_bytes(const mesh::Mesh& mesh, int bits) {
-  constexpr uint64_t kTreeBytes = 25;  // a triangle: nodes and references
-  constexpr uint64_t kTriangleBytes = 3 * sizeof(uint32_t);
-  std::vector<bool> used(mesh.positions.size());
-  for (const auto& triangle : mesh.triangles) {
-    for (uint32_t v : triangle) used[v] = true;
-  }
-  const auto vertices = static_cast<uint64_t>(std::count(used.begin(), used.end(), true));
-  const auto corner_words = static_cast<uint64_t>(triple_words(nkd::Geometry::corner_bits_for(vertices)));
-  uint64_t a_triangle = kTreeBytes + sizeof(uint32_t) * corner_words;
-  if (!mesh.normal_indices.empty()) a_triangle += kTriangleBytes;
-  if (!mesh.material_ids.empty()) a_triangle += sizeof(uint16_t);
-  if (mesh.source_primitives.back() + 1 != mesh.triangles.size()) a_triangle += sizeof(uint32_t);
-  return mesh.triangles.size() * a_triangle + vertices * sizeof(uint32_t) * static_cast<uint64_t>(triple_words(bits)) +
-         mesh.normals.size() * sizeof(Vec3f) + mesh.materials.size() * sizeof(Material);
 }
 
 }  // namespace kd::tools

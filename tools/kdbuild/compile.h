@@ -60,9 +60,4 @@ struct ObjectTarget {
 Result<AtomicFile> compile(const mesh::Mesh& mesh, const ObjectTarget& target, const build::BuildSettings& settings,
                            CompileReport& report, const Progress& progress);
 
-/// About how many bytes the object of a clean mesh will have, for knowing before the tree is built. Exact to a few
-/// kilobytes but for the tree, which is taken for a small one: what this lets through may yet be too large, what it
-/// does not hardly ever fits.
-uint64_t estimated_bytes(const mesh::Mesh& mesh, int bits);
-
 }  // namespace kd::tools
