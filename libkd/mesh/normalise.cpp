@@ -11,9 +11,10 @@ namespace {
 
 double displacement(const Lattice& lattice, Vec3d p_model, Vec3u q) { return length(lattice.to_model(q) - p_model); }
 
-/// A vertex as it is stored, and as the tree sees it.
+/// A vertex as it is stored, and as the tree sees it. What is stored is exact in float32 in either form, and kept so: of
+/// doubles that were rounded to float32 and back, g++ 12's vectoriser leaves out the rounding.
 struct Corner {
-  Vec3d stored;  // lattice space
+  Vec3f stored;  // lattice space
   Vec3u point;
   Vec3u key;  // equal for vertices that are stored alike
 };
@@ -21,14 +22,13 @@ struct Corner {
 Corner corner_of(const Lattice& lattice, Vec3d p_model, VertexForm form) {
   if (form == VertexForm::lattice) {
     const Vec3u point = lattice.to_lattice(p_model);
-    return {vec_cast<double>(point), point, point};
+    return {vec_cast<float>(point), point, point};
   }
   const auto bits = [](float v) { return std::bit_cast<uint32_t>(v); };
   // Adding 0 turns -0, which a coordinate of -0 in a box from +0 gives, into 0.
   const Vec3f f = vec_cast<float>(lattice.to_lattice_space(p_model) + Vec3d{0, 0, 0});
-  return {vec_cast<double>(f),
-          vec_cast<uint32_t>(Vec3f{std::rint(f.x), std::rint(f.y), std::rint(f.z)}),
-          {bits(f.x), bits(f.y), bits(f.z)}};
+  return {
+      f, vec_cast<uint32_t>(Vec3f{std::rint(f.x), std::rint(f.y), std::rint(f.z)}), {bits(f.x), bits(f.y), bits(f.z)}};
 }
 
 /// Exact: coordinates have 24 bits at most, so a cross product's components have 51.
@@ -86,7 +86,7 @@ LatticeMesh normalise(const Mesh& mesh, int bits, const Box3d& box_model, Vertex
   std::vector<uint32_t> new_index(mesh.positions.size(), kNoIndex);
   VertexTable table(mesh.positions.size());
   const auto moved = [&](const Corner& corner, Vec3d p_model) {
-    const double distance = length(out.lattice.to_model_space(corner.stored) - p_model);
+    const double distance = length(out.lattice.to_model_space(vec_cast<double>(corner.stored)) - p_model);
     out.max_displacement = std::fmax(out.max_displacement, distance);
     return distance;
   };
@@ -108,7 +108,7 @@ LatticeMesh normalise(const Mesh& mesh, int bits, const Box3d& box_model, Vertex
         new_index[v] = index;
         if (fresh) {
           out.vertices.push_back(corners[k].point);
-          if (form == VertexForm::float32) out.float_vertices.push_back(vec_cast<float>(corners[k].stored));
+          if (form == VertexForm::float32) out.float_vertices.push_back(corners[k].stored);
         }
         out.welded_vertices += !fresh;
         const double distance = moved(corners[k], mesh.positions[v]);
