@@ -9,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include "object_triangles.h"
+
 namespace kd::bench {
 
 namespace {
@@ -41,11 +43,6 @@ uint32_t scatter(uint32_t v) {
 
 double unit_interval(uint32_t word) { return (word >> 8) * (1.0 / 16777216.0); }
 
-render::RayRecord record(Vec3d o, Vec3d d, float t_max) {
-  const Vec3f of = vec_cast<float>(o), df = vec_cast<float>(d);
-  return {of.x, of.y, of.z, 0, df.x, df.y, df.z, t_max};
-}
-
 /// Cosine-distributed about `n`; the frame's first axis is square to the axis on which n is least.
 Vec3d bounce_direction(Vec3d n, uint32_t pixel) {
   const uint32_t first = scatter(pixel * 2654435761u + 12345u), second = scatter(first + 0x9e3779b9u);
@@ -61,40 +58,12 @@ Vec3d bounce_direction(Vec3d n, uint32_t pixel) {
                x * tangent.z + y * bitangent.z + z * n.z});
 }
 
-/// Source primitive -> the object's triangle; the identity if the object dropped none.
-std::vector<uint32_t> triangle_of_primitive(std::span<const uint32_t> sources, size_t triangles) {
-  std::vector<uint32_t> map;
-  for (uint32_t i = 0; i < triangles; ++i) {
-    const uint32_t primitive = sources.empty() ? i : sources[i];
-    if (primitive >= map.size()) map.resize(primitive + 1, 0xffffffffu);
-    map[primitive] = i;
-  }
-  return map;
-}
-
-class ModelTriangles {
- public:
-  explicit ModelTriangles(const nkd::ObjectFile& object)
-      : lattice_(object.summary().lattice),
-        geometry_(object.geometry()),
-        map_(triangle_of_primitive(
-            object.source_primitives() ? *object.source_primitives() : std::span<const uint32_t>{},
-            geometry_.triangle_count())) {}
-
-  std::array<Vec3d, 3> corners(int32_t primitive) const {
-    const PackedTriangles packed = geometry_.packed();
-    const Vec3u c = packed.corners_of(map_[static_cast<size_t>(primitive)]);
-    const auto corner = [&](uint32_t v) { return lattice_.to_model_space(vec_cast<double>(packed.position(v))); };
-    return {corner(c.x), corner(c.y), corner(c.z)};
-  }
-
- private:
-  const Lattice& lattice_;
-  const nkd::Geometry& geometry_;
-  std::vector<uint32_t> map_;
-};
-
 }  // namespace
+
+render::RayRecord record(Vec3d o, Vec3d d, float t_max) {
+  const Vec3f of = vec_cast<float>(o), df = vec_cast<float>(d);
+  return {of.x, of.y, of.z, 0, df.x, df.y, df.z, t_max};
+}
 
 Result<SharedCamera> read_camera(const std::string& path) {
   std::ifstream file(path);
@@ -141,30 +110,38 @@ PrimaryRays primary_rays(const SharedCamera& camera, uint32_t width, uint32_t he
   return out;
 }
 
-SecondaryRays secondary_rays(const nkd::ObjectFile& object, const SharedCamera& camera, const PrimaryRays& primary,
-                             std::span<const render::HitRecord> hits) {
+SurfacePoint surface_point(const render::RayRecord& r, float t_hit, const Corners& corners, double diagonal) {
+  const double lift = 2e-5 * diagonal;
+  const Vec3d o{r.ox, r.oy, r.oz}, d{r.dx, r.dy, r.dz};
+  const auto& [a, b, c] = corners;
+  Vec3d n = unit(cross(b - a, c - a));
+  if (dot(d, n) > 0) n = -n;
+  const double slope = dot(d, n);
+  double t = slope != 0 ? dot(a - o, n) / slope : t_hit;
+  if (!(std::fabs(t - t_hit) < 1e-2 * (1 + std::fabs(t_hit)))) t = t_hit;
+  return {{o.x + t * d.x + lift * n.x, o.y + t * d.y + lift * n.y, o.z + t * d.z + lift * n.z}, n};
+}
+
+SecondaryRays secondary_rays(const CornersOf& corners, double diagonal, const SharedCamera& camera,
+                             const PrimaryRays& primary, std::span<const render::HitRecord> hits) {
   SecondaryRays out;
-  const ModelTriangles triangles(object);
-  const double lift = 2e-5 * length(object.summary().lattice.extent);
   for (size_t i = 0; i < hits.size(); ++i) {
     if (hits[i].primitive < 0) continue;
-    const render::RayRecord& r = primary.rays[i];
-    const Vec3d o{r.ox, r.oy, r.oz}, d{r.dx, r.dy, r.dz};
-    const auto [a, b, c] = triangles.corners(hits[i].primitive);
-    Vec3d n = unit(cross(b - a, c - a));
-    if (dot(d, n) > 0) n = -n;
-    const double slope = dot(d, n);
-    double t = slope != 0 ? dot(a - o, n) / slope : hits[i].t;
-    if (!(std::fabs(t - hits[i].t) < 1e-2 * (1 + std::fabs(hits[i].t)))) t = hits[i].t;
-    const Vec3d p{o.x + t * d.x + lift * n.x, o.y + t * d.y + lift * n.y, o.z + t * d.z + lift * n.z};
-
-    const Vec3d way = camera.light - p;
+    const SurfacePoint at = surface_point(primary.rays[i], hits[i].t, corners(hits[i].primitive), diagonal);
+    const Vec3d way = camera.light - at.lifted;
     const Vec3d to_light = unit(way);
-    out.facing += dot(to_light, n) > 0;
-    out.shadow.push_back(record(p, to_light, static_cast<float>(length(way) * (1 - 1e-5))));
-    out.diffuse.push_back(record(p, bounce_direction(n, primary.pixels[i]), 1e30f));
+    out.facing += dot(to_light, at.normal) > 0;
+    out.shadow.push_back(record(at.lifted, to_light, static_cast<float>(length(way) * (1 - 1e-5))));
+    out.diffuse.push_back(record(at.lifted, bounce_direction(at.normal, primary.pixels[i]), 1e30f));
   }
   return out;
+}
+
+SecondaryRays secondary_rays(const nkd::ObjectFile& object, const SharedCamera& camera, const PrimaryRays& primary,
+                             std::span<const render::HitRecord> hits) {
+  const ObjectTriangles triangles(object);
+  const auto corners = [&](int64_t primitive) { return triangles.corners(primitive); };
+  return secondary_rays(corners, length(object.summary().lattice.extent), camera, primary, hits);
 }
 
 uint64_t ray_hash(std::span<const render::RayRecord> rays) {

@@ -6,11 +6,13 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "core/vec.h"
+#include "corners.h"
 #include "nkd/object_file.h"
 #include "render/trace.h"
 #include "sys/result.h"
@@ -23,6 +25,9 @@ struct SharedCamera {
   double vertical_fov_degrees = 60;
   Vec3d light;
 };
+
+/// A ray from t = 0, rounded to float32.
+render::RayRecord record(Vec3d origin, Vec3d direction, float t_max);
 
 /// ErrorClass::missing or usage.
 Result<SharedCamera> read_camera(const std::string& path);
@@ -40,9 +45,21 @@ struct SecondaryRays {
   uint64_t facing = 0;                     // shadow rays whose surface faces the light
 };
 
-/// From primary hits (primitives are the object's source triangles). The hit point is recomputed on the triangle's
-/// plane and moved 2e-5 of the box's diagonal along the normal that faces the ray. Vertices are the object's, that is,
-/// quantised.
+/// The corners of a source primitive that a ray hit, as the surface has them.
+using CornersOf = std::function<Corners(int64_t primitive)>;
+
+/// Where a ray that hit a triangle goes on: the hit point recomputed on the triangle's plane and moved 2e-5 of the
+/// box's diagonal along the normal that faces the ray.
+struct SurfacePoint {
+  Vec3d lifted;
+  Vec3d normal;  // length 1
+};
+SurfacePoint surface_point(const render::RayRecord& ray, float t_hit, const Corners& corners, double diagonal);
+
+/// From primary hits (primitives are source triangles), at their surface points. `diagonal`: of the box.
+SecondaryRays secondary_rays(const CornersOf& corners, double diagonal, const SharedCamera& camera,
+                             const PrimaryRays& primary, std::span<const render::HitRecord> hits);
+/// The same of an object: with its own vertices, that is, quantised ones.
 SecondaryRays secondary_rays(const nkd::ObjectFile& object, const SharedCamera& camera, const PrimaryRays& primary,
                              std::span<const render::HitRecord> hits);
 

@@ -8,17 +8,15 @@
 // meets the surface.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <limits>
 #include <vector>
 
 #include "core/box.h"
 #include "core/ray.h"
+#include "corners.h"
 
 namespace kd::bench {
-
-using Corners = std::array<Vec3d, 3>;  // of a triangle, model space
 
 struct ReferenceHit {
   int64_t triangle = -1;  // its place in the list of triangles; -1: none

@@ -3,9 +3,8 @@
 
 #include <doctest/doctest.h>
 
-#include "mesh/read_mesh.h"
+#include "pareto/meshes.h"
 #include "pareto/reference_tracer.h"
-#include "support/workshop.h"
 
 using namespace kd;
 using namespace kd::bench;
@@ -13,19 +12,6 @@ using namespace kd::bench;
 namespace {
 
 using Vec3i = Vec3<int64_t>;
-
-std::vector<Corners> triangles_of(const mesh::Mesh& mesh) {
-  std::vector<Corners> out;
-  for (const auto& t : mesh.triangles)
-    out.push_back({mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]});
-  return out;
-}
-
-mesh::Mesh data_mesh(const char* name) {
-  auto mesh = mesh::read_mesh((test::source_root() / "data" / name).string(), {});
-  REQUIRE(mesh);
-  return std::move(*mesh);
-}
 
 Vec3d random_point(std::mt19937& random, double size) {
   std::uniform_real_distribution<double> c(-size, size);
@@ -108,8 +94,8 @@ TEST_SUITE("the reference tracer") {
   // Every ray from inside a closed mesh meets it: at vertices and edges most of all.
   TEST_CASE("no ray leaves a closed mesh") {
     for (const char* name : {"icosphere.ply", "cube.obj"}) {
-      const mesh::Mesh mesh = data_mesh(name);
-      const ReferenceTracer tracer(triangles_of(mesh));
+      const mesh::Mesh mesh = test::data_mesh(name);
+      const ReferenceTracer tracer(test::corners_of(mesh));
       const Vec3d centre = (tracer.box().lo + tracer.box().hi) * 0.5;
       std::mt19937 random(3);
       for (int round = 0; round < 10; ++round) {
@@ -123,8 +109,8 @@ TEST_SUITE("the reference tracer") {
   }
 
   TEST_CASE("depths on a cube") {
-    const mesh::Mesh mesh = data_mesh("cube.obj");
-    const ReferenceTracer tracer(triangles_of(mesh));
+    const mesh::Mesh mesh = test::data_mesh("cube.obj");
+    const ReferenceTracer tracer(test::corners_of(mesh));
     const Vec3d lo = tracer.box().lo, hi = tracer.box().hi;
     std::mt19937 random(5);
     for (int i = 0; i < 1000; ++i) {
