@@ -5,7 +5,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "shared_rays.h"
+#include "pareto/render.h"
 #include "sys/parallel.h"
 
 namespace kd::bench {
@@ -139,7 +139,7 @@ std::vector<AimedRay> aim(const Targets& targets, Vec3d camera, double diagonal,
                           const std::function<const Corners*(uint32_t primitive)>& corners) {
   std::vector<AimedRay> out;
   std::vector<Corners> around;
-  const Vec3d origin = vec_cast<double>(vec_cast<float>(camera));
+  const Vec3d origin = to_ray(record(camera, {0, 0, 1}, 1)).origin;  // as float32 keeps it
   for (uint32_t i = 0; i < targets.all.size(); ++i) {
     const Target& target = targets.all[i];
     const auto star = targets.star(target);
@@ -154,7 +154,7 @@ std::vector<AimedRay> aim(const Targets& targets, Vec3d camera, double diagonal,
     const double margin = 0x1p-18 * (length(point - origin) + diagonal);
     if (length(point - origin) < 64 * margin) continue;
     const AimedRay aimed{i, record(origin, normalised(point - origin), 1e30f), 0};
-    const Ray ray{origin, {aimed.ray.dx, aimed.ray.dy, aimed.ray.dz}};
+    const Ray ray = to_ray(aimed.ray);
     const Across across(point, ray.direction);
     const double side =
         dot(cross(around[0][1] - around[0][0], around[0][2] - around[0][0]), ray.direction) < 0 ? 1 : -1;

@@ -192,30 +192,29 @@ Result<FormResult> measure_errors(const Truth& truth, const Form& form, const Ob
   return out;
 }
 
-/// All forms on the same rays, in turns, so that what else the machine does falls on all alike; medians over the
-/// rounds.
+/// All forms on the same rays, in turns, so that what else the machine does falls on all alike. Each round begins with
+/// another form.
 Result<void> measure_speed(const Truth& truth, const Objects& objects, const ParetoEffort& effort,
                            const render::Device& device, const Progress& progress, MeshResult& out) {
   const std::array<std::span<const render::RayRecord>, 3> rays{truth.view.primary.rays, truth.render.secondary.shadow,
                                                                truth.render.secondary.diffuse};
-  for (size_t c = 0; c < rays.size(); ++c) out.rays[c] = rays[c].size();
-  std::vector<std::array<std::vector<double>, 3>> seconds(out.forms.size());
-  for (int round = 0; round < effort.rounds; ++round) {
-    for (size_t f = 0; f < out.forms.size(); ++f) {
-      const Form& form = out.forms[f].form;
-      const Tracer tracer{device, objects.at({form.vertices, form.bits})->file, form.test};
-      for (size_t c = 0; c < rays.size(); ++c) {
+  for (size_t round = 0; round < static_cast<size_t>(effort.rounds); ++round) {
+    for (size_t c = 0; c < rays.size(); ++c) {
+      for (size_t turn = 0; turn < out.forms.size(); ++turn) {
         if (!keep_going(progress, static_cast<double>(round) / effort.rounds))
           return Error{ErrorClass::interrupted, "", "interrupted"};
+        FormResult& f = out.forms[(round + turn) % out.forms.size()];
+        const Tracer tracer{device, objects.at({f.form.vertices, f.form.bits})->file, f.form.test};
         auto m = tracer.trace(kRayClasses[c], rays[c], c == 1 ? RayMode::any : RayMode::closest, effort.warm_ups);
         if (!m) return m.error();
-        seconds[f][c].push_back(m->seconds());
+        f.seconds[c].push_back(m->seconds());
       }
     }
   }
-  for (size_t f = 0; f < out.forms.size(); ++f) {
-    for (size_t c = 0; c < rays.size(); ++c)
-      out.forms[f].mrays_per_second[c] = static_cast<double>(rays[c].size()) / median(seconds[f][c]) * 1e-6;
+  for (size_t c = 0; c < rays.size(); ++c) {
+    out.rays[c] = rays[c].size();
+    for (FormResult& f : out.forms)
+      f.mrays_per_second[c] = static_cast<double>(rays[c].size()) / median(f.seconds[c]) * 1e-6;
   }
   return {};
 }
@@ -234,10 +233,12 @@ std::string Form::name() const {
 std::vector<Form> forms_of(const std::vector<int>& bits) {
   std::vector<Form> forms{{VertexForm::float32, kMaxLatticeBits, render::TriangleTest::moller_trumbore},
                           {VertexForm::float32, kMaxLatticeBits, render::TriangleTest::woop}};
-  for (int b : bits) forms.push_back({VertexForm::lattice, b, render::TriangleTest::exact});
-  if (std::find(bits.begin(), bits.end(), kDefaultLatticeBits) == bits.end()) return forms;
-  for (const auto test : {render::TriangleTest::moller_trumbore, render::TriangleTest::woop})
-    forms.push_back({VertexForm::lattice, kDefaultLatticeBits, test});
+  for (int b : bits) {
+    forms.push_back({VertexForm::lattice, b, render::TriangleTest::exact});
+    if (b != kDefaultLatticeBits) continue;
+    for (const auto test : {render::TriangleTest::moller_trumbore, render::TriangleTest::woop})
+      forms.push_back({VertexForm::lattice, b, test});
+  }
   return forms;
 }
 

@@ -42,8 +42,9 @@ struct FormResult {
   uint64_t file_bytes = 0;
   uint64_t vertex_bytes = 0;  // of them, its vertices
   uint64_t device_bytes = 0;
-  double max_displacement = 0;  // model units
-  std::array<double, 3> mrays_per_second{};
+  double max_displacement = 0;                 // model units
+  std::array<std::vector<double>, 3> seconds;  // by ray class and round
+  std::array<double, 3> mrays_per_second{};    // of the medians
   HitErrors hits;
   double rmse = 0;  // linear RGB
   double flip = 0;

@@ -39,9 +39,16 @@ SpreadRatio operator/(const Spread& a, const Spread& b) {
   return {ratio(a.median, b.median), ratio(a.p99, b.p99), ratio(a.rms, b.rms)};
 }
 
+/// How fast one is in terms of the other: the median over the rounds, in each of which the two ran soon after another.
+double speed_ratio(const std::vector<double>& seconds, const std::vector<double>& other) {
+  std::vector<double> ratios;
+  for (size_t round = 0; round < seconds.size(); ++round) ratios.push_back(other[round] / seconds[round]);
+  return median(std::move(ratios));
+}
+
 /// What the default bits are to the baselines; nothing where they were not among the forms.
 struct Ratios {
-  std::array<double, 3> speed_to_mt, speed_to_woop;  // exact / float test, the same object, by ray class
+  std::array<double, 3> speed_to_mt, speed_to_woop;  // exact over float test, the same object, by ray class
   struct {
     const char* name;
     SpreadRatio ratio;
@@ -61,8 +68,8 @@ std::optional<Ratios> ratios(const MeshResult& mesh) {
               {"model_space_moller_trumbore", depth / mesh.model_space.moller_trumbore},
               {"model_space_woop", depth / mesh.model_space.woop}}};
   for (size_t c = 0; c < 3; ++c) {
-    out.speed_to_mt[c] = ours->mrays_per_second[c] / ours_mt->mrays_per_second[c];
-    out.speed_to_woop[c] = ours->mrays_per_second[c] / ours_woop->mrays_per_second[c];
+    out.speed_to_mt[c] = speed_ratio(ours->seconds[c], ours_mt->seconds[c]);
+    out.speed_to_woop[c] = speed_ratio(ours->seconds[c], ours_woop->seconds[c]);
   }
   return out;
 }
@@ -204,8 +211,13 @@ Table csv_table(const Circumstances& circumstances, std::span<const MeshResult> 
                "aimed_twice",
                "leaks",
                "model_space_mt_depth_rms_steps21",
-               "model_space_woop_depth_rms_steps21"});
+               "model_space_woop_depth_rms_steps21",
+               "exact_to_mt_primary",
+               "exact_to_mt_shadow",
+               "exact_to_mt_diffuse"});
   for (const MeshResult& mesh : meshes) {
+    const auto r = ratios(mesh);
+    const auto exactness = [&](size_t c) { return r ? fmt::format("{:.4f}", r->speed_to_mt[c]) : ""; };
     for (const FormResult& f : mesh.forms) {
       const HitErrors& h = f.hits;
       const auto real = [](double v) { return fmt::format("{:.7g}", v); };
@@ -254,7 +266,10 @@ Table csv_table(const Circumstances& circumstances, std::span<const MeshResult> 
                  whole(f.fans.twice),
                  whole(f.leaks),
                  real(mesh.model_space.moller_trumbore.rms / step21),
-                 real(mesh.model_space.woop.rms / step21)});
+                 real(mesh.model_space.woop.rms / step21),
+                 exactness(0),
+                 exactness(1),
+                 exactness(2)});
     }
   }
   return table;
