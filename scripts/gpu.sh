@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # On a GPU machine, from the project's root with dist/ (scripts/dist.sh) beside it: the parity test, 10^8 adversarial rays
-# against exact integers, the demo render, and traversal on the shared rays. Figures go to the folder named, as JSON.
+# (KD_STRESS_RAYS) against exact integers, the demo render, traversal on the shared rays, exact and with float tests, and
+# run time against error. Figures go to the folder named, as JSON and CSV.
 #   scripts/gpu.sh [FOLDER]
 cd "$(dirname "$0")/.."
 set -eu
@@ -17,7 +18,7 @@ KD_SOURCE_DIR=$PWD KD_SHARED_DIR=$PWD/dist/shared/data $bin/test_parity 2>&1 | t
 
 echo "== stress"
 stress=0
-$bin/kdbench stress --rays 100000000 --device cuda --quiet --json "$out/stress.json" >"$out/stress.txt" || stress=$?
+$bin/kdbench stress --rays "${KD_STRESS_RAYS:-100000000}" --device cuda --quiet --json "$out/stress.json" >"$out/stress.txt" || stress=$?
 tail -4 "$out/stress.txt"
 
 echo "== demo"
@@ -27,8 +28,16 @@ for device in cuda cpu; do
 done
 cmp "$out/cathedral-cuda.exr" "$out/cathedral-cpu.exr" && echo "cathedral: the same EXR bytes"
 
-echo "== traversal, 1920 x 1080"
-for mesh in sibenik sponza bunny dragon_res2 staircase living_room; do
-  $bin/kdbench trace dist/objects/$mesh.nkd --camera dist/shared/data/cameras/$mesh.txt --device cuda --repeat 20 --json "$out/trace-$mesh.json"
+meshes="sibenik sponza bunny dragon_res2 staircase living_room"
+echo "== traversal, 1920 x 1080, and what exactness costs: the same kernel with the usual float tests"
+for mesh in $meshes; do
+  for test in exact moller-trumbore woop; do
+    $bin/kdbench trace dist/objects/$mesh.nkd --camera dist/shared/data/cameras/$mesh.txt --device cuda --repeat 20 --triangle-test $test \
+      --json "$out/trace-$mesh-$test.json"
+  done
 done
+
+echo "== run time against error"
+$bin/kdbench pareto $(printf 'dist/shared/data/%s.ply ' $meshes) --size 1920x1080 --device cuda --csv "$out/pareto-cuda.csv" --json "$out/pareto-cuda.json" \
+  >"$out/pareto.md"
 exit $stress

@@ -193,8 +193,9 @@ FanCounts count_fans(const Targets& targets, std::span<const AimedRay> rays, con
       for (const StarTriangle& t : targets.star(targets.all[aimed.target])) {
         TriangleVertices vertices;
         packed.expand(triangles.index_of(t.primitive), vertices);
-        typename Test::Hit hit;
-        met += enters && Test{ray}.intersect(vertices, ray.s_max, hit);
+        float s;
+        NoCounter counter;
+        met += enters && Test{ray}.meets(vertices, ray.s_max, s, counter);
       }
       counts.missed += met == 0;
       counts.twice += met > 1;

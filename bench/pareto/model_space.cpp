@@ -32,7 +32,7 @@ Spread depth_error(const View& view, const ReferenceRender& reference, const Cor
     triangle.b = vec_cast<float>(c[1]);
     triangle.c = vec_cast<float>(c[2]);
     const LatticeRay ray = model_ray(view.primary.rays[i]);
-    typename Test::Hit hit;
+    FloatHit hit;
     if (!Test{ray}.intersect(triangle, 1e30f, hit)) continue;
     const float t = hit.s * static_cast<float>(ray.t_scale);
     errors.push_back(std::fabs(static_cast<double>(t) - reference.t[i]) *

@@ -164,7 +164,7 @@ KD_HD Survey survey(const CaseView& c, const LatticeRay& ray, const ExactRay& ex
   Survey out;
   for_each_touched(c.oracle, exact, plainly, [&](const OracleTriangle& triangle) {
     const Crossing crossing = cross_triangle(exact, triangle);
-    TriangleHit hit;
+    TriangleHit hit{};
     const bool met = Tracer::meets(c, ray, triangle.index, hit);
     ++out.decided;
     if (out.fault == Fault::none) out.fault = judge_test(crossing, met, hit);

@@ -173,7 +173,7 @@ KD_HD inline void cast_shadow(const CaseView& c, uint32_t placement, double lowe
   NoCounter counter;
   const uint32_t triangle = traverse<RayMode::closest>(c.object, ray, ray.s_max, kNoTriangle, counter);
   if (triangle == kNoTriangle) return;
-  TriangleHit hit;
+  TriangleHit hit{};
   intersect_triangle(ray, c.object.triangles[triangle], ray.s_max, hit);
   const render::InstanceView& instance = c.placements[placement];
   const Vec3d view = instance.to_scene.apply_vector(q.direction);

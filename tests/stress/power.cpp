@@ -44,7 +44,7 @@ struct PlainTracer {
   template <class Visit>
   static void for_each_hit(const CaseView& c, const LatticeRay& ray, uint32_t excluded, const Visit& visit) {
     for (uint32_t i = 0; i < c.oracle.triangle_count; ++i) {
-      TriangleHit hit;
+      TriangleHit hit{};
       if (i == excluded || !meets(c, ray, i, hit)) continue;
       const auto s = static_cast<float>(hit.s);
       if (s >= ray.s_min && s <= ray.s_max) visit(stress::detail::Rank{s, i});
