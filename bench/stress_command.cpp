@@ -21,18 +21,6 @@ struct Options {
   bool quiet = false;
 };
 
-std::string names_of_classes() {
-  std::string names;
-  for (const auto& row : stress::class_rows()) names += fmt::format("{}{}", names.empty() ? "" : ", ", row.name);
-  return names;
-}
-
-std::string names_of_meshes() {
-  std::string names;
-  for (const auto& row : stress::shape_rows()) names += fmt::format("{}, ", row.name);
-  return names + std::string(stress::kOffsetBall);
-}
-
 Result<stress::Tally> stress_all(const Options& o) {
   tools::catch_interrupts();
   const ThreadLimit limit(o.threads);
@@ -70,10 +58,13 @@ Command stress_command(CLI::App& app) {
       ->check(tools::whole_number(1, int64_t{1} << 50))
       ->capture_default_str();
   c->add_option("--device", o->device, "auto, cpu, cuda or cuda:N")->capture_default_str();
-  c->add_option("--class", s.classes, "A class of rays; may be repeated. All: " + names_of_classes());
-  c->add_option("--mesh", s.meshes, "A mesh made here, or none; may be repeated. All: " + names_of_meshes());
+  c->add_option("--class", s.classes, "A class of rays; may be repeated. All: " + stress::class_names())
+      ->allow_extra_args(false);
+  c->add_option("--mesh", s.meshes, "A mesh made here, or none; may be repeated. All: " + stress::mesh_names())
+      ->allow_extra_args(false);
   c->add_option("--bits", s.bits, "Lattice bits, a list")
       ->delimiter(',')
+      ->allow_extra_args(false)
       ->check(tools::whole_number(stress::kStressBits.front(), kMaxLatticeBits))
       ->capture_default_str();
   c->add_option("--seed", s.seed, "Of the random numbers")->capture_default_str();

@@ -51,10 +51,14 @@ Result<StressCase> make(const Source& s) {
 }
 
 template <class Rows>
-Error unknown(const std::string& option, const std::string& name, const Rows& rows) {
+std::string names_of(const Rows& rows) {
   std::string names;
-  for (const auto& row : rows) names += fmt::format(", {}", row.name);
-  return {ErrorClass::usage, fmt::format("{} {}", option, name), "there are" + names.substr(1)};
+  for (const auto& row : rows) names += fmt::format("{}{}", names.empty() ? "" : ", ", row.name);
+  return names;
+}
+
+Error unknown(const std::string& option, const std::string& name, const std::string& names) {
+  return {ErrorClass::usage, fmt::format("{} {}", option, name), "there are " + names};
 }
 
 bool chosen(const std::vector<std::string>& names, std::string_view name) {
@@ -65,12 +69,12 @@ Result<void> check_names(const StressSettings& s) {
   for (const std::string& name : s.classes) {
     const bool known =
         std::any_of(std::begin(kClassRows), std::end(kClassRows), [&](auto& r) { return r.name == name; });
-    if (!known) return unknown("--class", name, kClassRows);
+    if (!known) return unknown("--class", name, class_names());
   }
   for (const std::string& name : s.meshes) {
     const auto rows = shape_rows();
     const bool known = std::any_of(rows.begin(), rows.end(), [&](auto& r) { return r.name == name; });
-    if (!known && name != kOffsetBall && name != "none") return unknown("--mesh", name, rows);
+    if (!known && name != kOffsetBall && name != "none") return unknown("--mesh", name, mesh_names());
   }
   return {};
 }
@@ -188,6 +192,8 @@ uint32_t plain_every(const StressCase& c) { return std::max(1u, static_cast<uint
 }  // namespace
 
 std::span<const ClassRow> class_rows() { return kClassRows; }
+std::string class_names() { return names_of(class_rows()); }
+std::string mesh_names() { return fmt::format("{}, {}", names_of(shape_rows()), kOffsetBall); }
 
 Result<std::vector<StressRow>> run_stress(const StressSettings& settings, const render::Device& device,
                                           const Progress& progress) {

@@ -20,6 +20,10 @@ std::span<const ClassRow> class_rows();
 /// A mesh of ours that is not one of shape_rows().
 constexpr std::string_view kOffsetBall = "offset-ball";
 
+/// What there is, as lists to read.
+std::string class_names();
+std::string mesh_names();
+
 struct StressSettings {
   uint64_t rays = 10'000'000;
   uint64_t first = 0;  // number of each job's first ray: to replay one

@@ -14,7 +14,7 @@ constexpr ShapeRow kRows[] = {
     {"needles", "triangles two of whose corners all but touch", needles, true, 1, false, false},
     {"slivers", "triangles whose corners all but lie on a line", slivers, true, 1, false, false},
     {"mixed", "triangles of every size", mixed, true, 1, false, false},
-    {"fan", "two fans of 65,536 triangles each", fan, true, 0.002, true, false},  // a ray at a hub meets them all
+    {"fan", "two fans of 65,536 triangles each", fan, true, 0.0005, true, false},  // a ray at a hub meets them all
     {"small-fan", "two fans of 128 triangles each", small_fan, true, 1, true, false},
     {"duplicates", "coplanar copies and overlaps of a wall", duplicates, true, 1, false, false},
     {"flat-cells", "rooms a lattice step wide", flat_cells, true, 1, false, false},
