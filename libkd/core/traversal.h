@@ -53,7 +53,7 @@ KD_HD inline uint32_t traverse(const ObjectView& object, const LatticeRay& ray, 
 
   float s_entry = ray.s_min * kEntryMargin;
   float s_exit = min_of(ray.s_exit, s_best) * kExitMargin;
-  float s_resume = s_exit;  // where the cell on top of the stack begins
+  float s_resume = s_exit;  // where the cell on top of the stack begins; never beyond where the one below it does
   Node node = load(object.nodes);
 
   while (true) {
@@ -70,12 +70,10 @@ KD_HD inline uint32_t traverse(const ObjectView& object, const LatticeRay& ray, 
       const bool to_near = s >= s_entry && (node.link & near_empty) == 0;
       const bool to_far = s <= s_exit && (node.link & far_empty) == 0;
       const uint32_t first = first_child(node);
-      if (to_near && to_far) {
-        stack[depth++] = {first + (down ? 0 : 1), s_exit};
-        s_resume = s * kExitMargin;
-      }
+      if (to_near && to_far) stack[depth++] = {first + (down ? 0 : 1), s_exit};
       if (to_near) {
         s_exit = least_of(s_exit, s * kExitMargin);
+        if (to_far) s_resume = s_exit;
       } else {
         s_entry = largest_of(s_entry, s * kEntryMargin);
       }
