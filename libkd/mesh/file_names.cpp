@@ -27,7 +27,7 @@ std::string fit(std::string_view wish) {
 }  // namespace
 
 std::string FileNames::give(std::string_view wish) {
-  const std::string name = fit(wish);
+  std::string name = fit(wish);
   const auto [entry, fresh] = taken_.try_emplace(lower_case(name), 1);
   if (fresh) return name;
   uint64_t& clashes = entry->second;

@@ -254,7 +254,7 @@ Result<void> Placer::run() {
       return failed(fmt::format("node {}: {}", next.node, fault));
     }
     const Frame frame = compose(next.parent, own);
-    if (const auto visited = visit(next.node, frame); !visited) return visited;
+    if (auto visited = visit(next.node, frame); !visited) return visited;
     for (auto child = node.children.rbegin(); child != node.children.rend(); ++child) open.push_back({*child, frame});
   }
   warn(singular_, "placement(s) left out: their axes lie in a plane or are not finite");

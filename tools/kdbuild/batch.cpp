@@ -50,6 +50,7 @@ void build(Item& item, const BatchSettings& settings, const Progress& progress) 
 
 std::vector<Item> look_at(const std::vector<Job>& jobs, const BatchSettings& settings) {
   std::vector<Item> items;
+  items.reserve(jobs.size());
   for (const Job& job : jobs) items.push_back({job, {}, {}, std::nullopt, {}});
   in_order(
       items.size(), settings.at_once, [&](size_t i) { look_at(items[i], settings); }, [](size_t) {});
