@@ -11,8 +11,8 @@ namespace {
 
 double displacement(const Lattice& lattice, Vec3d p_model, Vec3u q) { return length(lattice.to_model(q) - p_model); }
 
-/// A vertex as it is stored, and as the tree sees it. What is stored is exact in float32 in either form, and kept so: of
-/// doubles that were rounded to float32 and back, g++ 12's vectoriser leaves out the rounding.
+/// A vertex as it is stored, and as the tree sees it. What is stored is exact in float32 in either form, and kept so:
+/// of doubles that were rounded to float32 and back, g++ 12's vectoriser leaves out the rounding.
 struct Corner {
   Vec3f stored;  // lattice space
   Vec3u point;
