@@ -54,10 +54,13 @@ Result<void> time_builds(const mesh::LatticeMesh& m, const build::BuildSettings&
   return {};
 }
 
+/// A load takes milliseconds, so there are more of them than of builds.
+constexpr int kLoadsPerBuild = 5;
+
 /// Opens the object again and again; the first time is not counted, nor are the pages it brings in.
 Result<void> time_loads(const std::string& object_path, int repeats, BuildMeasurement& out) {
   const ThreadLimit limit(1);
-  for (int i = -1; i < repeats; ++i) {
+  for (int i = -1; i < kLoadsPerBuild * repeats; ++i) {
     Timer timer;
     auto object = nkd::ObjectFile::open(object_path);
     const double open = timer.lap();

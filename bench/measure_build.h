@@ -28,7 +28,7 @@ struct ObjectBytes {
   uint64_t rest() const { return total - nodes - references - triangles - vertices; }  // header, attributes
 };
 
-/// Seconds are one a repeat.
+/// Seconds are one a repeat, and of loads five.
 struct BuildMeasurement {
   std::string mesh;  // the path, as given
   uint64_t triangles = 0;

@@ -24,7 +24,7 @@ ObjectTriangles::ObjectTriangles(const nkd::ObjectFile& object)
                                  object.geometry().triangle_count())) {}
 
 Corners ObjectTriangles::corners(int64_t primitive) const {
-  const Vec3u c = packed_.corners_of(map_[static_cast<size_t>(primitive)]);
+  const Vec3u c = packed_.corners[map_[static_cast<size_t>(primitive)]];
   const auto corner = [&](uint32_t v) { return lattice_.to_model_space(vec_cast<double>(packed_.position(v))); };
   return {corner(c.x), corner(c.y), corner(c.z)};
 }

@@ -12,8 +12,8 @@ namespace kd::bench {
 struct SweepLists {
   std::vector<std::string> costs{"1:1.5", "1:1", "1.5:1", "2:1", "3:1", "15:20"};  // traversal:intersection
   std::vector<std::string> bonuses{"0.08", "0.2"};
-  std::vector<std::string> prices{"0", "0.05", "0.1", "0.25", "0.5"};  // of a byte a triangle
-  std::vector<std::string> depths{"64"};                               // inner nodes
+  std::vector<std::string> prices{"0", "0.02", "0.1", "0.25", "0.35", "0.5"};  // of a byte a triangle
+  std::vector<std::string> depths{"64"};                                       // inner nodes
 };
 
 struct SweepPoint {

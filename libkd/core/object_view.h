@@ -25,20 +25,20 @@ struct ObjectView {
   int bits = kDefaultLatticeBits;
 };
 
-/// Triangles as an object stores them: packed triples of indices to packed lattice points, or to three floats each.
+/// Bits of each number in a vertex as it is stored: a lattice coordinate, or the bits of a float.
+constexpr int stored_vertex_bits(VertexForm form, int lattice_bits) {
+  return form == VertexForm::float32 ? 32 : lattice_bits;
+}
+
+/// Triangles as an object stores them: triples of indices to vertices, and the vertices.
 struct PackedTriangles {
-  const uint32_t* corners = nullptr;
-  const uint32_t* vertices = nullptr;
-  int corner_bits = 0;
-  int vertex_bits = 0;
+  PackedTriples corners;
+  PackedTriples vertices;
   VertexForm form = VertexForm::lattice;
 
-  KD_HD KD_INLINE Vec3u corners_of(uint64_t triangle) const {
-    return unpack_triple(corners + triangle * static_cast<uint64_t>(triple_words(corner_bits)), corner_bits);
-  }
   /// Lattice space.
   KD_HD KD_INLINE Vec3f position(uint64_t index) const {
-    const Vec3u v = unpack_triple(vertices + index * static_cast<uint64_t>(triple_words(vertex_bits)), vertex_bits);
+    const Vec3u v = vertices[index];
     if (form == VertexForm::float32) return {float_from_bits(v.x), float_from_bits(v.y), float_from_bits(v.z)};
     return vec_cast<float>(v);
   }
@@ -49,7 +49,7 @@ struct PackedTriangles {
   }
   /// The form traversal wants, put where it is wanted: a copy would wait for each of its parts.
   KD_HD KD_INLINE void expand(uint64_t triangle, TriangleVertices& out) const {
-    const Vec3u c = corners_of(triangle);
+    const Vec3u c = corners[triangle];
     out.a = position(c.x);
     out.b = position(c.y);
     out.c = position(c.z);

@@ -11,7 +11,7 @@ struct SahCosts {
   double intersection = 1.5;  // of a triangle test
   double empty_bonus = 0.08;  // share of a split's cost that is forgiven where it cuts off empty space
   /// What memory is worth: a split has to lower the tree's SAH cost by this much for each byte a triangle that it adds.
-  double byte_price = 0.25;
+  double byte_price = 0.35;
 };
 
 /// Half the surface of a box with these edges. Every use is a ratio of two.

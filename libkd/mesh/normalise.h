@@ -49,7 +49,7 @@ LatticeMesh normalise(const Mesh& mesh, int bits, const Box3d& box_model, Vertex
 double max_displacement(const Mesh& mesh, const Lattice& lattice,
                         double enough = std::numeric_limits<double>::infinity());
 
-/// Fewer bits than this are not worth looking for: a vertex takes one word up to here.
+/// Fewer bits than this are not worth looking for: four bytes a vertex.
 constexpr int kFewestUsefulBits = 10;
 
 /// The fewest bits, from kFewestUsefulBits on, with which no vertex of these meshes, all on one lattice over `box`,

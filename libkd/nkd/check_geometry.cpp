@@ -101,10 +101,11 @@ class FastNodeCheck {
 };
 
 /// The bits of floats from 0 on are ordered as they are; those of infinities, NaNs and negative numbers come behind.
-Check check_float_vertices(std::span<const uint32_t> vertices) {
+Check check_float_vertices(const Geometry& geometry) {
   constexpr auto kLargest = std::bit_cast<uint32_t>(static_cast<float>(lattice_max(kMaxLatticeBits)));
-  const size_t i = first_beyond(vertices, uint64_t{kLargest} + 1);
-  if (i == vertices.size()) return std::nullopt;
+  const std::span words(reinterpret_cast<const uint32_t*>(geometry.vertices.data()), 3 * geometry.vertex_count());
+  const size_t i = first_beyond(words, uint64_t{kLargest} + 1);
+  if (i == words.size()) return std::nullopt;
   return found(Issue::vertex_value, fmt::format("vertex {}", i / 3));
 }
 
@@ -146,26 +147,21 @@ Check check_nodes(const Geometry& geometry) {
 }
 
 Check check_indices(const Geometry& geometry) {
-  if (geometry.vertices.size() % static_cast<size_t>(triple_words(geometry.bits)) != 0) {
+  if (geometry.vertex_count() == 0 || !is_triples(geometry.vertices.size(), geometry.vertex_bits())) {
     return found(Issue::vertex_size);
   }
-  const int corner_bits = geometry.corner_bits();
-  if (geometry.triangles.size() % static_cast<size_t>(triple_words(corner_bits)) != 0) {
+  if (geometry.triangle_count() == 0 || !is_triples(geometry.triangles.size(), geometry.corner_bits())) {
     return found(Issue::triangle_size);
   }
   if (const size_t i = first_beyond(geometry.references, geometry.triangle_count()); i < geometry.references.size()) {
     return found(Issue::reference, fmt::format("reference {}", i));
   }
-  if (const size_t i = first_triple_beyond(geometry.triangles, corner_bits, geometry.vertex_count());
-      i < geometry.triangle_count()) {
+  const size_t count = geometry.triangle_count();
+  if (const size_t i = first_triple_beyond(geometry.packed().corners, count, geometry.vertex_count()); i < count) {
     return found(Issue::corner, fmt::format("triangle {}", i));
   }
-  if (geometry.form == VertexForm::float32) return check_float_vertices(geometry.vertices);
-  if (const size_t i = first_triple_beyond(geometry.vertices, geometry.bits, uint64_t{1} << geometry.bits);
-      i < geometry.vertex_count()) {
-    return found(Issue::vertex_range, fmt::format("vertex {}", i));
-  }
-  return std::nullopt;
+  // Lattice points cannot be out of range: every number of `bits` bits is a coordinate.
+  return geometry.form == VertexForm::float32 ? check_float_vertices(geometry) : std::nullopt;
 }
 
 }  // namespace kd::nkd

@@ -15,7 +15,7 @@
 
 namespace kd::nkd {
 
-constexpr uint32_t kFormatVersion = 3;
+constexpr uint32_t kFormatVersion = 4;
 
 struct Provenance {
   std::string source_name;   // without folders; of several meshes in it, which
@@ -28,16 +28,17 @@ struct Provenance {
 struct Geometry {
   std::span<const Node> nodes;
   std::span<const uint32_t> references;
-  std::span<const uint32_t> triangles;  // packed triples of corner_bits() bits: indices to vertices
-  std::span<const uint32_t> vertices;   // packed triples of `bits` bits: lattice points; or three float32 each
+  std::span<const uint8_t> triangles;  // packed triples of corner_bits() bits: indices to vertices
+  std::span<const uint8_t> vertices;   // packed triples of vertex_bits() bits: lattice points; or three float32 each
   int bits = kDefaultLatticeBits;
   VertexForm form = VertexForm::lattice;  // float32 only with kMaxLatticeBits
 
-  size_t vertex_count() const { return vertices.size() / static_cast<size_t>(triple_words(bits)); }
+  int vertex_bits() const { return stored_vertex_bits(form, bits); }
+  size_t vertex_count() const { return triple_count(vertices.size(), vertex_bits()); }
   /// As many as (number of vertices - 1) has, at least 1.
   int corner_bits() const { return corner_bits_for(vertex_count()); }
-  size_t triangle_count() const { return triangles.size() / static_cast<size_t>(triple_words(corner_bits())); }
-  PackedTriangles packed() const { return {triangles.data(), vertices.data(), corner_bits(), bits, form}; }
+  size_t triangle_count() const { return triple_count(triangles.size(), corner_bits()); }
+  PackedTriangles packed() const { return {{triangles.data(), corner_bits()}, {vertices.data(), vertex_bits()}, form}; }
 
   static int corner_bits_for(size_t vertex_count) {
     return vertex_count < 2 ? 1 : static_cast<int>(std::bit_width(vertex_count - 1));

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <limits>
 #include <span>
 
@@ -31,43 +30,21 @@ size_t first_beyond(std::span<const T> values, uint64_t limit) {
   return values.size();
 }
 
-namespace detail {
-
-/// As first_triple_beyond, of triples that fill one Word each; limit < 2^bits.
-template <class Word>
-size_t first_packed_beyond(std::span<const uint32_t> packed, int bits, uint64_t limit) {
-  const Word mask = (Word{1} << bits) - 1;
-  const Word last = static_cast<Word>(limit) - 1;
-  const size_t count = packed.size() * sizeof(uint32_t) / sizeof(Word);
+/// The index of the first of these triples that has a number >= limit, or their count.
+inline size_t first_triple_beyond(PackedTriples triples, size_t count, uint64_t limit) {
+  const uint64_t last = limit - 1;
+  // last - value wraps to a number with the top bit where a value is beyond: nothing here comes near 2^63.
+  const auto beyond = [&](Vec3u t) { return ((last - t.x) | (last - t.y) | (last - t.z)) >> 63; };
   for (size_t begin = 0; begin < count; begin += kCheckBlock) {
     const size_t end = std::min(begin + kCheckBlock, count);
-    const auto beyond = [&](size_t i) {
-      Word word;
-      std::memcpy(&word, packed.data() + i * (sizeof(Word) / sizeof(uint32_t)), sizeof word);
-      const Word x = word & mask, y = word >> bits & mask, z = word >> (2 * bits) & mask;
-      // last - value wraps to a number of high bits where a value is beyond: nothing here comes near the top bit.
-      return ((last - x) | (last - y) | (last - z)) >> (8 * sizeof(Word) - 1);
-    };
-    Word some = 0;
-    for (size_t i = begin; i < end; ++i) some |= beyond(i);
+    uint64_t some = 0;
+    for (size_t i = begin; i < end; ++i) some |= beyond(triples[i]);
     if (some == 0) continue;
     size_t i = begin;
-    while (beyond(i) == 0) ++i;
+    while (beyond(triples[i]) == 0) ++i;
     return i;
   }
   return count;
-}
-
-}  // namespace detail
-
-/// The index of the first of these packed triples (`core/triple.h`) that has a number >= limit, or their count.
-/// `packed` is a whole number of triples, limit >= 1.
-inline size_t first_triple_beyond(std::span<const uint32_t> packed, int bits, uint64_t limit) {
-  const auto words = static_cast<size_t>(triple_words(bits));
-  if (words == 3) return first_beyond(packed, limit) / words;
-  if (limit >> bits != 0) return packed.size() / words;  // no number of so many bits is
-  return words == 1 ? detail::first_packed_beyond<uint32_t>(packed, bits, limit)
-                    : detail::first_packed_beyond<uint64_t>(packed, bits, limit);
 }
 
 }  // namespace kd::nkd

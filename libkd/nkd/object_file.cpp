@@ -28,8 +28,8 @@ Summary read_summary(const nkd_schema::Object& o) {
 Geometry read_geometry(const nkd_schema::Object& o) {
   return {section<Node>(o.nodes()),
           section<uint32_t>(o.references()),
-          section<uint32_t>(o.triangles()),
-          section<uint32_t>(o.vertices()),
+          section<uint8_t>(o.triangles()),
+          section<uint8_t>(o.vertices()),
           o.bits(),
           static_cast<VertexForm>(o.vertex_form())};
 }

@@ -109,6 +109,7 @@ Check check_checksum(std::span<const T> section, uint64_t recorded, const char* 
   if (actual == recorded) return std::nullopt;
   return found(Issue::checksum, fmt::format("section {}", name));
 }
+template Check check_checksum(std::span<const uint8_t>, uint64_t, const char*);
 template Check check_checksum(std::span<const uint32_t>, uint64_t, const char*);
 template Check check_checksum(std::span<const uint16_t>, uint64_t, const char*);
 template Check check_checksum(std::span<const Node>, uint64_t, const char*);

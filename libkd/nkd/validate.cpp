@@ -47,7 +47,7 @@ class TreeCheck {
  private:
   Corners corners(uint32_t triangle) const {
     const PackedTriangles packed = geometry_.packed();
-    const Vec3u c = packed.corners_of(triangle);
+    const Vec3u c = packed.corners[triangle];
     return {packed.lattice_point(c.x), packed.lattice_point(c.y), packed.lattice_point(c.z)};
   }
   std::span<const uint32_t> references(Node leaf) const {

@@ -59,7 +59,7 @@ TEST_SUITE("kdbench sweep") {
 
   TEST_CASE("the figures of a tree are those kdbuild gives") {
     const Terminal t;
-    const Rows rows = sweep(t, {"--costs", "1:1.5", "--bonus", "0.08", "--price", "0.25"});
+    const Rows rows = sweep(t, {"--costs", "1:1.5", "--bonus", "0.08", "--price", "0.35"});
     const auto stats = t.report("kdbuild", {"build", data_file("icosphere.ply"), "-o", "s.nkd", "--stats", "-"});
     REQUIRE(rows.size() == 2);
     CHECK(std::stod(rows[1][4]) == doctest::Approx(stats["tree"]["sah_cost"].get<double>()).epsilon(1e-3));
@@ -80,16 +80,16 @@ TEST_SUITE("kdbench sweep") {
   TEST_CASE("without lists, the default settings are among the rows, and all trees answer alike") {
     const Terminal t;
     const Rows rows = sweep(t, {"--costs", "1:1.5", "--bonus", "0.08"});
-    REQUIRE(rows.size() == 6);
+    REQUIRE(rows.size() == 7);
     const auto settings = t.report("kdbuild", {"build", data_file("icosphere.ply"), "-o", "s.nkd", "--stats", "-"});
     CHECK(std::any_of(rows.begin() + 1, rows.end(), [&](const auto& row) {
-      return row[2] == "0.25" && std::stod(row[4]) == doctest::Approx(settings["tree"]["sah_cost"]).epsilon(1e-3);
+      return row[2] == "0.35" && std::stod(row[4]) == doctest::Approx(settings["tree"]["sah_cost"]).epsilon(1e-3);
     }));
     const std::string out =
         t.succeeds("kdbench", {"sweep", data_file("icosphere.ply"), "--camera", "cam.txt", "--size", "16x16",
                                "--device", "cpu", "--repeat", "1", "--costs", "1:1.5", "--bonus", "0.08"})
             .out;
-    CHECK_MESSAGE(out.find("All 5 trees answer alike: ") != std::string::npos, out);
+    CHECK_MESSAGE(out.find("All 6 trees answer alike: ") != std::string::npos, out);
   }
 
   TEST_CASE("trees that do not answer alike are an error") {

@@ -111,8 +111,8 @@ TEST_SUITE("kdbuild info and validate") {
     REQUIRE((normals && materials && sources));
     const std::pair<const char*, std::string> sections[] = {{"nodes", bytes_of<Node>(g.nodes)},
                                                             {"references", bytes_of<uint32_t>(g.references)},
-                                                            {"triangles", bytes_of<uint32_t>(g.triangles)},
-                                                            {"vertices", bytes_of<uint32_t>(g.vertices)},
+                                                            {"triangles", bytes_of<uint8_t>(g.triangles)},
+                                                            {"vertices", bytes_of<uint8_t>(g.vertices)},
                                                             {"source_primitives", bytes_of<uint32_t>(*sources)},
                                                             {"normals", bytes_of<Vec3f>(normals->values)},
                                                             {"normal_indices", bytes_of<uint32_t>(normals->indices)},
@@ -167,8 +167,8 @@ TEST_SUITE("kdbuild info and validate") {
     const size_t root = load(0, uint32_t{});
     const size_t vtable = root - static_cast<size_t>(load(root, int32_t{}));
     const size_t version = root + load(vtable + 4, uint16_t{});
-    REQUIRE(load(version, uint32_t{}) == 3);
-    object[version] = 4;
+    REQUIRE(load(version, uint32_t{}) == nkd::kFormatVersion);
+    object[version] = static_cast<char>(nkd::kFormatVersion + 1);
     t.write("q.nkd", object);
     t.fails(kTool, {"info", "q.nkd"}, ErrorClass::object, {"q.nkd", "NKD102", "version"});
     t.fails(kTool, {"validate", "q.nkd"}, ErrorClass::object, {"q.nkd", "NKD102"});
@@ -221,9 +221,9 @@ TEST_SUITE("kdbuild info and validate") {
                                    (source_root() / "schema" / "nkd.fbs").string() + " -- " + t.path("full.nkd"));
     if (!printed) return;
     const auto object = nlohmann::json::parse(t.read("full.json"));
-    CHECK(object["version"] == 3);
+    CHECK(object["version"] == nkd::kFormatVersion);
     CHECK(object["bits"] == 21);
-    CHECK(object["triangles"].size() == 4);
+    CHECK(object["triangles"].size() == 4 * triple_bytes(2) + kTripleMargin);
     CHECK(object["material_names"] == nlohmann::json{"red", "blue"});
     CHECK(object["source_primitives"] == nlohmann::json{1, 2, 3, 4});
   }

@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <cfloat>
 #include <cmath>
 
@@ -63,28 +64,39 @@ TEST_CASE("lattice: axes without extent") {
   CHECK_FALSE(is_singular(point.frame()));
 }
 
-TEST_CASE("lattice: packing in one, two and three words") {
-  CHECK(triple_words(1) == 1);
-  CHECK(triple_words(10) == 1);
-  CHECK(triple_words(11) == 2);
-  CHECK(triple_words(21) == 2);
-  CHECK(triple_words(22) == 3);
-  for (int bits = kMinLatticeBits; bits <= kMaxLatticeBits; ++bits) {
+TEST_CASE("packed triples: every number of bits, in as few bytes as hold them") {
+  CHECK(triple_bytes(1) == 1);
+  CHECK(triple_bytes(10) == 4);
+  CHECK(triple_bytes(21) == 8);
+  CHECK(triple_bytes(22) == 9);
+  CHECK(triple_bytes(24) == 9);
+  CHECK(triple_bytes(32) == 12);
+  for (int bits = 1; bits <= 32; ++bits) {
     CAPTURE(bits);
     Random random(static_cast<uint64_t>(bits));
-    const uint32_t top = lattice_max(bits);
-    for (int i = 0; i < 1000; ++i) {
-      Vec3u q = random.point(top);
-      if (i < 8) q = {i & 1 ? top : 0, i & 2 ? top : 0, i & 4 ? top : 0};
-      uint32_t words[4] = {0xabadcafe, 0xabadcafe, 0xabadcafe, 0xabadcafe};
-      pack_triple(q, bits, words);
-      REQUIRE(unpack_triple(words, bits) == q);
-      for (int w = triple_words(bits); w < 4; ++w) REQUIRE(words[w] == 0xabadcafe);
-    }
+    const auto top = static_cast<uint32_t>((uint64_t{1} << bits) - 1);
+    std::vector<Vec3u> points;
+    for (uint32_t i = 0; i < 8; ++i) points.push_back({i & 1 ? top : 0, i & 2 ? top : 0, i & 4 ? top : 0});
+    for (int i = 0; i < 1000; ++i) points.push_back(random.point(top));
+    const std::vector<uint8_t> section = pack_triples(points, bits);
+    REQUIRE(is_triples(section.size(), bits));
+    REQUIRE(triple_count(section.size(), bits) == points.size());
+    const PackedTriples packed{section.data(), bits};
+    for (size_t i = 0; i < points.size(); ++i) REQUIRE(packed[i] == points[i]);
+    CHECK(std::count(section.end() - kTripleMargin, section.end(), 0) == kTripleMargin);
+    CHECK_FALSE(is_triples(kTripleMargin - 1, bits));
+    CHECK(triple_count(kTripleMargin - 1, bits) == 0);
+    if (bits > 2) CHECK_FALSE(is_triples(section.size() + 1, bits));
   }
-  const uint32_t words[6] = {0, 1, 2, 3, 4, 5}, corners[3] = {1, 0, 1};
+  // As documented: little-endian, x in the lowest bits.
+  const std::vector<Vec3u> one{{0x123, 0x456, 0x789}};
+  const std::vector<uint8_t> bytes = pack_triples(one, 12);
+  CHECK(std::equal(bytes.begin(), bytes.begin() + 5, std::array<uint8_t, 5>{0x23, 0x61, 0x45, 0x89, 0x07}.begin()));
+
+  const std::vector<Vec3u> vertices{{0, 1, 2}, {3, 4, 5}}, corners{{1, 0, 1}};
+  const std::vector<uint8_t> packed_vertices = pack_triples(vertices, 24), packed_corners = pack_triples(corners, 1);
   TriangleVertices t;
-  PackedTriangles{corners, words, 24, 24}.expand(0, t);
+  PackedTriangles{{packed_corners.data(), 1}, {packed_vertices.data(), 24}}.expand(0, t);
   CHECK(t.a == Vec3f{3, 4, 5});
   CHECK(t.b == Vec3f{0, 1, 2});
   CHECK(t.c == t.a);

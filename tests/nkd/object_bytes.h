@@ -26,7 +26,8 @@ inline std::string read_bytes(const std::string& path) {
 struct Contents {
   nkd::Summary summary;
   std::vector<Node> nodes;
-  std::vector<uint32_t> references, triangles, vertices;
+  std::vector<uint32_t> references;
+  std::vector<uint8_t> triangles, vertices;
   VertexForm form = VertexForm::lattice;
   std::vector<uint32_t> source_primitives, normal_indices;
   std::vector<Vec3f> normals;
@@ -59,11 +60,30 @@ struct Contents {
   /// Stores the vertices in float32, up to a quarter of a step beside their lattice points. Of 24 bits.
   void store_floats(uint64_t seed) {
     Random random(seed);
-    form = VertexForm::float32;
-    for (uint32_t& word : vertices) {
-      const bool at_end = word == 0 || word == lattice_max(kMaxLatticeBits);
-      word = std::bit_cast<uint32_t>(static_cast<float>(word + (at_end ? 0 : random.real(-0.24, 0.24))));
+    std::vector<Vec3u> floats = unpacked(vertices, kMaxLatticeBits);
+    for (Vec3u& vertex : floats) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const uint32_t at = vertex[axis];
+        const bool at_end = at == 0 || at == lattice_max(kMaxLatticeBits);
+        const auto moved = static_cast<float>(at + (at_end ? 0 : random.real(-0.24, 0.24)));
+        vertex.set(axis, std::bit_cast<uint32_t>(moved));
+      }
     }
+    form = VertexForm::float32;
+    vertices = pack_triples(floats, 32);
+  }
+
+  /// Puts another triple in the place of number i.
+  static void replace(std::vector<uint8_t>& section, int bits, size_t i, Vec3u triple) {
+    std::vector<Vec3u> triples = unpacked(section, bits);
+    triples[i] = triple;
+    section = pack_triples(triples, bits);
+  }
+
+  static std::vector<Vec3u> unpacked(const std::vector<uint8_t>& section, int bits) {
+    std::vector<Vec3u> triples(triple_count(section.size(), bits));
+    for (size_t i = 0; i < triples.size(); ++i) triples[i] = PackedTriples{section.data(), bits}[i];
+    return triples;
   }
 
   nkd::Geometry geometry() const { return {nodes, references, triangles, vertices, summary.lattice.bits, form}; }

@@ -99,8 +99,10 @@ TEST_CASE("nkd: changed contents behind checksums that match") {
   int opened = 0;
   for (int i = 0; i < 400; ++i) {
     Contents c = good;
-    const auto spoil = [&](uint32_t& word) {
-      word = random.chance(0.5) ? word ^ 1u << random.integer(0, 31) : random.integer(0, 64);
+    const auto spoil = [&](auto& word) {
+      using Word = std::decay_t<decltype(word)>;
+      const uint32_t bit = 1u << random.integer(0, 8 * sizeof(Word) - 1);
+      word = static_cast<Word>(random.chance(0.5) ? word ^ bit : random.integer(0, 64));
     };
     const auto pick = [&](auto& v) -> auto& { return v[random.integer(0, static_cast<uint32_t>(v.size() - 1))]; };
     for (uint32_t n = random.integer(1, 3); n > 0; --n) {

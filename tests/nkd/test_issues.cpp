@@ -26,7 +26,8 @@ std::function<void(Contents&)> float_vertex(uint32_t bits) {
   return [bits](Contents& c) {
     c = good(24);
     c.store_floats(1);
-    c.vertices[4] = bits;
+    const Vec3u vertex = Contents::unpacked(c.vertices, 32)[1];
+    Contents::replace(c.vertices, 32, 1, {vertex.x, bits, vertex.z});
   };
 }
 
@@ -158,23 +159,24 @@ const std::vector<BadFile>& bad_files() {
       {Issue::reference, [](Contents& c) { c.references[0] = 0xffffffff; }, {}},
       {Issue::corner,
        [](Contents& c) {
-         pack_triple({0, 120, 1}, 7, &c.triangles[7]);
+         Contents::replace(c.triangles, 7, 7, {0, 120, 1});
        },
        {}},
-      {Issue::corner, [](Contents& c) { c.triangles.back() = 0xffffffff; }, {}},
+      {Issue::corner,
+       [](Contents& c) {
+         Contents::replace(c.triangles, 7, 39, {0, 1, 127});
+       },
+       {}},
+      {Issue::corner,
+       [](Contents& c) {
+         Contents::replace(c.triangles, 7, 0, {120, 0, 1});
+       },
+       {}},
       {Issue::vertex_size, [](Contents& c) { c.vertices.push_back(0); }, {}},
-      {Issue::triangle_size,
-       [](Contents& c) {
-         c = Contents(soup_shape(kBits, 400, Soup::mixed, 5), kBits);  // two words a triangle
-         c.triangles.push_back(0);
-       },
-       {}},
-      {Issue::vertex_range,
-       [](Contents& c) {
-         c = good(23);
-         c.vertices[4] = 1u << 23;
-       },
-       {}},
+      {Issue::vertex_size, [](Contents& c) { c.vertices.resize(kTripleMargin); }, {}},
+      {Issue::vertex_size, [](Contents& c) { c.vertices.resize(3); }, {}},
+      {Issue::triangle_size, [](Contents& c) { c.triangles.push_back(0); }, {}},
+      {Issue::triangle_size, [](Contents& c) { c.triangles.resize(kTripleMargin); }, {}},
       {Issue::vertex_value, float_vertex(std::bit_cast<uint32_t>(kNaN)), {}},
       {Issue::vertex_value, float_vertex(std::bit_cast<uint32_t>(HUGE_VALF)), {}},
       {Issue::vertex_value, float_vertex(std::bit_cast<uint32_t>(16777216.0f)), {}},

@@ -37,14 +37,15 @@ struct KeptAttributes {
   }
 };
 
-std::vector<uint32_t> stored_vertices(const mesh::LatticeMesh& lattice_mesh, VertexForm form) {
-  if (form == VertexForm::lattice) return pack_triples(lattice_mesh.vertices, lattice_mesh.lattice.bits);
-  std::vector<uint32_t> words;
-  words.reserve(3 * lattice_mesh.float_vertices.size());
+std::vector<uint8_t> stored_vertices(const mesh::LatticeMesh& lattice_mesh, VertexForm form) {
+  const int bits = stored_vertex_bits(form, lattice_mesh.lattice.bits);
+  if (form == VertexForm::lattice) return pack_triples(lattice_mesh.vertices, bits);
+  std::vector<Vec3u> words;
+  words.reserve(lattice_mesh.float_vertices.size());
   for (const Vec3f& v : lattice_mesh.float_vertices) {
-    for (int axis = 0; axis < 3; ++axis) words.push_back(std::bit_cast<uint32_t>(v[axis]));
+    words.push_back({std::bit_cast<uint32_t>(v.x), std::bit_cast<uint32_t>(v.y), std::bit_cast<uint32_t>(v.z)});
   }
-  return words;
+  return pack_triples(words, bits);
 }
 
 void report_lattice(const mesh::LatticeMesh& lattice_mesh, CompileReport& report) {
@@ -93,8 +94,8 @@ Result<AtomicFile> compile(const mesh::Mesh& mesh, const ObjectTarget& target, c
 
   const int bits = lattice_mesh.lattice.bits,
             corner_bits = nkd::Geometry::corner_bits_for(lattice_mesh.vertices.size());
-  const std::vector<uint32_t> vertices = stored_vertices(lattice_mesh, target.vertices);
-  const std::vector<uint32_t> triangles = pack_triples(lattice_mesh.triangles, corner_bits);
+  const std::vector<uint8_t> vertices = stored_vertices(lattice_mesh, target.vertices);
+  const std::vector<uint8_t> triangles = pack_triples(lattice_mesh.triangles, corner_bits);
   const KeptAttributes attributes(mesh, lattice_mesh);
   const nkd::Summary summary{lattice_mesh.lattice, report.max_displacement, report.rms_displacement,
                              report.tree,          target.provenance,       mesh.material_names};

@@ -30,14 +30,12 @@ SizeEstimate estimated_size(const mesh::Mesh& mesh, int bits) {
   }
   const auto vertices = static_cast<uint64_t>(std::count(used.begin(), used.end(), true));
   const uint64_t triangles = mesh.triangles.size();
-  uint64_t a_triangle =
-      sizeof(uint32_t) * static_cast<uint64_t>(triple_words(nkd::Geometry::corner_bits_for(vertices)));
+  uint64_t a_triangle = triple_bytes(nkd::Geometry::corner_bits_for(vertices));
   if (!mesh.normal_indices.empty()) a_triangle += kTriangleBytes;
   if (!mesh.material_ids.empty()) a_triangle += sizeof(uint16_t);
   if (mesh.source_primitives.back() + 1 != triangles) a_triangle += sizeof(uint32_t);
-  const uint64_t rest = triangles * a_triangle +
-                        vertices * sizeof(uint32_t) * static_cast<uint64_t>(triple_words(bits)) +
-                        mesh.normals.size() * sizeof(Vec3f) + mesh.materials.size() * sizeof(Material);
+  const uint64_t rest = triangles * a_triangle + vertices * triple_bytes(bits) + mesh.normals.size() * sizeof(Vec3f) +
+                        mesh.materials.size() * sizeof(Material);
   return {rest, triangles * kLeastTreeBytes, triangles * kMostTreeBytes};
 }
 

@@ -123,12 +123,12 @@ uint64_t traversal_bytes(const nkd::Geometry& g) {
 
 /// Where packed sections wait for their expansion; shared by all objects, sized for the largest.
 struct Staging {
-  uint32_t* vertices;
-  uint32_t* corners;
+  uint8_t* vertices;
+  uint8_t* corners;
 };
 
-Staging staging_pieces(DeviceMemory& memory, size_t most_vertex_words, size_t most_corners) {
-  return {memory.piece<uint32_t>(most_vertex_words), memory.piece<uint32_t>(most_corners)};
+Staging staging_pieces(DeviceMemory& memory, size_t most_vertices, size_t most_corners) {
+  return {memory.piece<uint8_t>(most_vertices), memory.piece<uint8_t>(most_corners)};
 }
 
 cudaError_t fill_object(const DeviceObject& object, const Staging& staging, const nkd::Geometry& geometry,
@@ -139,7 +139,8 @@ cudaError_t fill_object(const DeviceObject& object, const Staging& staging, cons
   if (status == cudaSuccess) status = upload(staging.corners, geometry.triangles, stream);
   if (status != cudaSuccess) return status;
   const auto count = static_cast<uint32_t>(geometry.triangle_count());
-  const PackedTriangles packed{staging.corners, staging.vertices, geometry.corner_bits(), geometry.bits, geometry.form};
+  const PackedTriangles packed{
+      {staging.corners, geometry.corner_bits()}, {staging.vertices, geometry.vertex_bits()}, geometry.form};
   expand_kernel<<<blocks_for(count), kBlock, 0, stream>>>(packed, count, object.triangles);
   return cudaGetLastError();
 }
@@ -182,7 +183,7 @@ class DeviceScene {
 
 void DeviceScene::lay_out() {
   const size_t pixels = size_t{scene_.film.width} * scene_.film.height;
-  size_t most_vertex_words = 0, most_corners = 0;
+  size_t most_vertices = 0, most_corners = 0;
   objects_.assign(scene_.objects.size(), {});
   object_views_.assign(scene_.objects.size(), {});
   object_bytes_ = 0;
@@ -190,7 +191,7 @@ void DeviceScene::lay_out() {
     if (!scene_.objects[i].file) continue;
     const nkd::ObjectFile& file = *scene_.objects[i].file;
     const nkd::Attributes& a = scene_.objects[i].attributes;
-    most_vertex_words = std::max(most_vertex_words, file.geometry().vertices.size());
+    most_vertices = std::max(most_vertices, file.geometry().vertices.size());
     most_corners = std::max(most_corners, file.geometry().triangles.size());
     objects_[i] = object_pieces(memory_, file.geometry());
     object_views_[i] = {{objects_[i].nodes, objects_[i].references, objects_[i].triangles, file.summary().lattice.bits},
@@ -203,7 +204,7 @@ void DeviceScene::lay_out() {
     object_bytes_ += traversal_bytes(file.geometry()) + a.source_primitives.size_bytes() + a.normals.size_bytes() +
                      a.normal_indices.size_bytes() + a.materials.size_bytes() + a.material_ids.size_bytes();
   }
-  staging_ = staging_pieces(memory_, most_vertex_words, most_corners);
+  staging_ = staging_pieces(memory_, most_vertices, most_corners);
   instances_ = memory_.piece<InstanceView>(scene_.instances.size());
   objects_on_device_ = memory_.piece<ShadedObjectView>(scene_.objects.size());
   hierarchy_ = memory_.piece<HierarchyNode>(scene_.hierarchy.size());
