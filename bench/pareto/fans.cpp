@@ -193,9 +193,9 @@ FanCounts count_fans(const Targets& targets, std::span<const AimedRay> rays, con
       for (const StarTriangle& t : targets.star(targets.all[aimed.target])) {
         TriangleVertices vertices;
         packed.expand(triangles.index_of(t.primitive), vertices);
-        float s;
+        typename Test::Distance s;
         NoCounter counter;
-        met += enters && Test{ray}.meets(vertices, ray.s_max, s, counter);
+        met += enters && Test{ray}.template meets<mode>(vertices, ray.s_max, s, counter);
       }
       counts.missed += met == 0;
       counts.twice += met > 1;

@@ -21,7 +21,7 @@ LatticeRay model_ray(const render::RayRecord& r) {
   return ray;
 }
 
-template <class Test>
+template <class Method>
 Spread depth_error(const View& view, const ReferenceRender& reference, const CornersOf& corners) {
   std::vector<double> errors;
   for (size_t i = 0; i < reference.hits.size(); ++i) {
@@ -33,7 +33,7 @@ Spread depth_error(const View& view, const ReferenceRender& reference, const Cor
     triangle.c = vec_cast<float>(c[2]);
     const LatticeRay ray = model_ray(view.primary.rays[i]);
     FloatHit hit;
-    if (!Test{ray}.intersect(triangle, 1e30f, hit)) continue;
+    if (!Method::intersect(ray, triangle, 1e30f, hit)) continue;
     const float t = hit.s * static_cast<float>(ray.t_scale);
     errors.push_back(std::fabs(static_cast<double>(t) - reference.t[i]) *
                      length(to_ray(view.primary.rays[i]).direction));
@@ -44,7 +44,7 @@ Spread depth_error(const View& view, const ReferenceRender& reference, const Cor
 }  // namespace
 
 ModelSpaceDepth model_space_depth(const View& view, const ReferenceRender& reference, const CornersOf& corners) {
-  return {depth_error<MollerTrumboreTest>(view, reference, corners), depth_error<WoopTest>(view, reference, corners)};
+  return {depth_error<MollerTrumbore>(view, reference, corners), depth_error<Woop>(view, reference, corners)};
 }
 
 }  // namespace kd::bench

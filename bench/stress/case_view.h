@@ -38,7 +38,7 @@ struct OracleView {
 /// What is known of a mesh beyond its triangles.
 struct CaseTraits {
   bool even = false;    // every line crosses it an even number of times: it is closed
-  bool convex = false;  // and no point of it hides another from outside, its faces exactly plane
+  bool convex = false;  // and no point of it hides another from outside; its faces exactly plane, wound outwards
   bool inside =
       false;  // every point within inside_size of inside_point (maximum norm, lattice steps) is in its interior
   bool sheets = false;  // inside_point lies between two sheets across z, one step apart

@@ -5,8 +5,8 @@
 //   - of the triangles that it may touch, the triangle test meets those that the exact ray crosses and no other, with
 //     distance and weights to kRoundings roundings;
 //   - the nearest hit is the nearest crossing, and a shadow ray meets something exactly where there is a crossing, with
-//     the nearest triangle excluded, too. Distances are compared as traversal does, as float32; where the roundings of
-//     two distances overlap, either may be the nearer, but where both are certainly one float the lower index wins.
+//     the nearest triangle excluded, too. Where the roundings of two distances in double overlap, either may be the
+//     nearer.
 #pragma once
 
 #include "core/traversal.h"
@@ -27,7 +27,7 @@ struct ProductTracer {
     return traverse<RayMode::any>(c.object, ray, ray.s_max, excluded, counter);
   }
   KD_HD static bool meets(const CaseView& c, const LatticeRay& ray, uint32_t triangle, TriangleHit& hit) {
-    return intersect_triangle(ray, c.object.triangles[triangle], 1e30f, hit);
+    return intersect_triangle(ray, c.object.triangles[triangle], hit);
   }
 };
 
@@ -61,30 +61,25 @@ struct TestCounter {
   KD_HD KD_INLINE void evaluated_in_double() { ++in_double; }
 };
 
-/// The float32 values that the product may compute for a crossing's distance.
-struct FloatRange {
-  float lo, hi;
-};
-
-KD_HD KD_INLINE FloatRange distance_of(const Crossing& crossing) {
-  const double slack = kRoundings * 0x1p-53 * crossing.farthest;
-  return {static_cast<float>(crossing.s - slack), static_cast<float>(crossing.s + slack)};
-}
-KD_HD KD_INLINE bool certainly_within(const LatticeRay& ray, FloatRange s) {
-  return s.lo >= ray.s_min && s.hi <= ray.s_max;
-}
-KD_HD KD_INLINE bool maybe_within(const LatticeRay& ray, FloatRange s) {
-  return s.hi >= ray.s_min && s.lo <= ray.s_max;
-}
-
-/// The order of hits: distance, then index.
+/// A hit, and the distances between which the product may put it: where the ray passes through an edge or a vertex, the
+/// farther ones too that order faces there.
 struct Rank {
-  float s = 2e30f;
+  double s_least = 2e30, s_most = 2e30;
   uint32_t triangle = kNoTriangle;
-  KD_HD KD_INLINE bool before(const Rank& other) const {
-    return s < other.s || (s == other.s && triangle < other.triangle);
+
+  /// Certainly.
+  KD_HD KD_INLINE bool before(const Rank& other) const { return s_most < other.s_least; }
+  KD_HD KD_INLINE bool certainly_within(const LatticeRay& ray) const {
+    return s_least >= ray.s_min && s_most <= ray.s_max;
   }
+  KD_HD KD_INLINE bool maybe_within(const LatticeRay& ray) const { return s_most >= ray.s_min && s_least <= ray.s_max; }
 };
+
+KD_HD KD_INLINE Rank rank_of(const Crossing& crossing, uint32_t triangle) {
+  const double slack = kRoundings * 0x1p-53 * crossing.farthest;
+  const double later = crossing.touches ? 0x1p-46 * (3 * crossing.farthest + 1) : 0;
+  return {crossing.s - slack, crossing.s + slack + later, triangle};
+}
 
 /// All that the oracle gathers of one ray's crossings.
 struct Survey {
@@ -169,18 +164,17 @@ KD_HD Survey survey(const CaseView& c, const LatticeRay& ray, const ExactRay& ex
     ++out.decided;
     if (out.fault == Fault::none) out.fault = judge_test(crossing, met, hit);
     if (!crossing.met || triangle.index == excluded) return;
-    const FloatRange s = distance_of(crossing);
-    if (!maybe_within(ray, s)) return;
+    const Rank rank = rank_of(crossing, triangle.index);
+    if (!rank.maybe_within(ray)) return;
     out.possible = true;
     out.ties = out.ties || crossing.touches;
     out.met += met;
-    if (!certainly_within(ray, s)) {
+    if (!rank.certainly_within(ray)) {
       out.ambiguous = true;
       return;
     }
-    const Rank rank{s.hi, triangle.index};
-    if (rank.before(out.first)) out.first = rank;
-    if (triangle.index != answer && rank.before(out.second)) out.second = rank;
+    if (rank.s_most < out.first.s_most) out.first = rank;
+    if (triangle.index != answer && rank.s_most < out.second.s_most) out.second = rank;
   });
   return out;
 }
@@ -190,9 +184,8 @@ KD_HD inline bool may_be_met(const CaseView& c, const LatticeRay& ray, const Exa
                              Rank& rank) {
   const Crossing crossing = cross_triangle(exact, c.oracle.triangle(triangle));
   if (!crossing.met) return false;
-  const FloatRange s = distance_of(crossing);
-  rank = {s.lo, triangle};
-  return maybe_within(ray, s);
+  rank = rank_of(crossing, triangle);
+  return rank.maybe_within(ray);
 }
 
 /// The answers of traversal to one ray.

@@ -124,7 +124,7 @@ Shape tetrahedron(int bits) {
   constexpr uint32_t kCells = 8;
   const uint32_t edge = 1u << (bits - 1), step = edge / kCells;
   const std::array<Vec3u, 4> corners{Vec3u{0, 0, 0}, {edge, edge, 0}, {edge, 0, edge}, {0, edge, edge}};
-  constexpr std::array<std::array<size_t, 3>, 4> kFaces{{{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
+  constexpr std::array<std::array<size_t, 3>, 4> kFaces{{{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}}};
   Shape shape;
   for (const auto& face : kFaces) {
     const auto at = [&](uint32_t i, uint32_t j) {

@@ -154,11 +154,6 @@ KD_HD inline void as_record(const CaseView& c, Query& q) {
   q.direction = instance.to_lattice.apply_vector(vec_cast<double>(d));
 }
 
-KD_HD KD_INLINE Vec3d normal_of(const TriangleVertices& t) {
-  const Vec3d a = vec_cast<double>(t.a);
-  return cross(vec_cast<double>(t.b) - a, vec_cast<double>(t.c) - a);
-}
-
 /// A direction of scene space on the lit side of a surface, down to the very horizon.
 KD_HD inline Vec3d to_some_light(Vec3d normal, double lowest, Random& random) {
   const Vec3d across = normalised(cross(normal, normalised(random.vector(1))));
@@ -174,21 +169,17 @@ KD_HD inline void cast_shadow(const CaseView& c, uint32_t placement, double lowe
   const uint32_t triangle = traverse<RayMode::closest>(c.object, ray, ray.s_max, kNoTriangle, counter);
   if (triangle == kNoTriangle) return;
   TriangleHit hit{};
-  intersect_triangle(ray, c.object.triangles[triangle], ray.s_max, hit);
+  intersect_triangle(ray, c.object.triangles[triangle], hit);
   const render::InstanceView& instance = c.placements[placement];
   const Vec3d view = instance.to_scene.apply_vector(q.direction);
   const render::SurfaceHit surface_hit{ray.t_at(hit.s), hit.u, hit.v, placement, triangle};
   const render::Surface surface = render::surface_at(c.scene(), surface_hit, view);
   const Vec3d light = to_some_light(surface.geometric, lowest, random);
   if (!(dot(surface.geometric, light) > 0)) return;
-  // Where a ray clips a convex body's edge by less than float32 tells, the face it leaves by may be its nearest hit.
-  const Vec3d inner = c.traits.inside_point - vec_cast<double>(c.object.triangles[triangle].a);
-  const Vec3d normal = normal_of(c.object.triangles[triangle]);
-  const bool enters = dot(normal, q.direction) * dot(normal, inner) > 0;
   q.origin = instance.to_lattice.apply_point(surface.shadow_origin);
   q.direction = instance.to_lattice.apply_vector(light);
   q.excluded = triangle;
-  q.demand = c.traits.convex && enters ? Demand::lit : Demand::lifted;
+  q.demand = c.traits.convex ? Demand::lit : Demand::lifted;
 }
 
 KD_HD inline Query random_query(const CaseView& c, RayClass ray_class, uint64_t index, Random& random) {

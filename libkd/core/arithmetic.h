@@ -3,7 +3,9 @@
 // operand.
 #pragma once
 
+#include <bit>
 #include <cmath>
+#include <cstdint>
 
 #include "core/platform.h"
 
@@ -32,5 +34,18 @@ KD_HD KD_INLINE float least_of(float a, float b) { return KD_ON_DEVICE ? fminf(a
 KD_HD KD_INLINE float largest_of(float a, float b) { return KD_ON_DEVICE ? fmaxf(a, b) : max_of(a, b); }
 KD_HD KD_INLINE float least_of(float a, float b, float c) { return least_of(least_of(a, b), c); }
 KD_HD KD_INLINE float largest_of(float a, float b, float c) { return largest_of(largest_of(a, b), c); }
+
+/// The least float32 that is not below x.
+KD_HD KD_INLINE float rounded_up(float x) { return x; }
+KD_HD KD_INLINE float rounded_up(double x) {
+#if KD_ON_DEVICE
+  return __double2float_ru(x);
+#else
+  const auto nearest = static_cast<float>(x);
+  if (!(nearest < x)) return nearest;
+  const auto bits = std::bit_cast<uint32_t>(nearest);
+  return std::bit_cast<float>(nearest < 0 ? bits - 1 : bits + 1);
+#endif
+}
 
 }  // namespace kd

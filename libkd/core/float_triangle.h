@@ -37,11 +37,9 @@ KD_HD KD_INLINE Vec3f relative_to(const LatticeRay& ray, Vec3f p) {
 }  // namespace detail
 
 /// Moller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", JGT 1997, both sides of the triangle.
-struct MollerTrumboreTest {
-  static constexpr bool kExact = false;
-  const LatticeRay& ray;
-
-  KD_HD KD_INLINE bool intersect(const TriangleVertices& triangle, float s_limit, FloatHit& hit) const {
+struct MollerTrumbore {
+  KD_HD KD_INLINE static bool intersect(const LatticeRay& ray, const TriangleVertices& triangle, float s_limit,
+                                        FloatHit& hit) {
     using namespace detail;
     const Vec3f ab = triangle.b - triangle.a, ac = triangle.c - triangle.a;
     const Vec3f p = fused_cross(ray.direction, ac);
@@ -59,31 +57,15 @@ struct MollerTrumboreTest {
     hit = {s * inverse, u * inverse, v * inverse};
     return true;
   }
-
-  template <class Counter>
-  KD_HD KD_INLINE bool meets(const TriangleVertices& triangle, float s_limit, float& s, Counter&) const {
-    FloatHit hit;
-    if (!intersect(triangle, s_limit, hit)) return false;
-    s = hit.s;
-    return true;
-  }
-  /// Of a triangle that the ray meets.
-  KD_HD KD_INLINE FloatHit locate(const TriangleVertices& triangle) const {
-    FloatHit hit;
-    intersect(triangle, 1e30f, hit);
-    return hit;
-  }
 };
 
 /// Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2013, both sides, with its fallback to double
 /// where an edge function is zero. The ray's largest direction component is 1 or -1, so the shear needs no division.
 /// The edge functions are not fused: only then does an edge have the same value, negated, for the triangle on its other
 /// side.
-struct WoopTest {
-  static constexpr bool kExact = false;
-  const LatticeRay& ray;
-
-  KD_HD KD_INLINE bool intersect(const TriangleVertices& triangle, float s_limit, FloatHit& hit) const {
+struct Woop {
+  KD_HD KD_INLINE static bool intersect(const LatticeRay& ray, const TriangleVertices& triangle, float s_limit,
+                                        FloatHit& hit) {
     using namespace detail;
     const Vec3f a = relative_to(ray, triangle.a);
     const Vec3f b = relative_to(ray, triangle.b);
@@ -112,20 +94,31 @@ struct WoopTest {
     hit = {s * std::fabs(inverse), v * inverse, w * inverse};
     return true;
   }
+};
 
-  template <class Counter>
+/// One of these as the policy that traversal takes.
+template <class Method>
+struct FloatTest {
+  static constexpr bool kExact = false;
+  using Distance = float;
+  const LatticeRay& ray;
+
+  template <RayMode mode, class Counter>
   KD_HD KD_INLINE bool meets(const TriangleVertices& triangle, float s_limit, float& s, Counter&) const {
     FloatHit hit;
-    if (!intersect(triangle, s_limit, hit)) return false;
+    if (!Method::intersect(ray, triangle, s_limit, hit)) return false;
     s = hit.s;
     return true;
   }
   /// Of a triangle that the ray meets.
   KD_HD KD_INLINE FloatHit locate(const TriangleVertices& triangle) const {
     FloatHit hit;
-    intersect(triangle, 1e30f, hit);
+    Method::intersect(ray, triangle, 1e30f, hit);
     return hit;
   }
 };
+
+using MollerTrumboreTest = FloatTest<MollerTrumbore>;
+using WoopTest = FloatTest<Woop>;
 
 }  // namespace kd

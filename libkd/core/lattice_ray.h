@@ -52,6 +52,27 @@ KD_HD KD_INLINE float exit_distance(const LatticeRay& ray, float top) {
   return s * (s > 0 ? 1 + 0x1p-22f : 1.0f);
 }
 
+/// Where the ray first is in the cube [low, high]^3; false if it never is within [t_min, t_max].
+KD_HD KD_INLINE bool pass_cube(Vec3d o, Vec3d d, double low, double high, double t_min, double t_max, double& t_enter) {
+  t_enter = t_min;
+  if (!(t_min <= t_max)) return false;
+  const auto within = [&](double x) { return x >= low && x <= high; };
+  // Most rays of a scene start inside; they are spared the divisions.
+  if (within(o.x + t_min * d.x) && within(o.y + t_min * d.y) && within(o.z + t_min * d.z)) return true;
+  double t_exit = t_max;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double oa = o[axis], da = d[axis];
+    if (da != 0) {
+      const double per_step = 1 / da, t0 = (low - oa) * per_step, t1 = (high - oa) * per_step;
+      t_enter = max_of(t_enter, min_of(t0, t1));
+      t_exit = min_of(t_exit, max_of(t0, t1));
+    } else if (!within(oa)) {
+      return false;
+    }
+  }
+  return t_enter <= t_exit;
+}
+
 /// Takes a ray that is already in lattice space onto the grid. `o` and `d` are in lattice steps; they may be anything,
 /// far away and NaN included. False: the ray has no point in the cube within [t_min, t_max], or is not a ray.
 KD_HD inline bool snap_ray(Vec3d o, Vec3d d, double t_min, double t_max, int bits, LatticeRay& ray) {
@@ -65,18 +86,8 @@ KD_HD inline bool snap_ray(Vec3d o, Vec3d d, double t_min, double t_max, int bit
   const double top = lattice_max(bits);
 
   // Where the ray enters the cube, widened by a grid step on every side: snapping may bring it that much nearer.
-  double t_enter = t_min, t_exit = t_max;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double oa = o[axis], da = d[axis];
-    if (da != 0) {
-      const double per_step = 1 / da, t0 = (-grid - oa) * per_step, t1 = (top + grid - oa) * per_step;
-      t_enter = max_of(t_enter, min_of(t0, t1));
-      t_exit = min_of(t_exit, max_of(t0, t1));
-    } else if (oa < -grid || oa > top + grid) {
-      return false;
-    }
-  }
-  if (!(t_enter <= t_exit)) return false;
+  double t_enter;
+  if (!pass_cube(o, d, -grid, top + grid, t_min, t_max, t_enter)) return false;
 
   // The origin: on the last grid plane across k at or before the entry, inside the cube.
   const double steps = 1 / grid, t_scale = 1 / speed;

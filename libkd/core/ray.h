@@ -13,4 +13,7 @@ struct Ray {
   double t_max = 1e300;
 };
 
+/// What is asked of a ray: the first thing it meets, or whether it meets anything.
+enum class RayMode { closest, any };
+
 }  // namespace kd

@@ -5,13 +5,16 @@
 // nearest hit so far lies before the next cell's entry.
 //
 // Why no cell is lost. With e = 2^-24, plane - origin is exact, so the computed distance s of a plane obeys
-// |s - S| <= 2.1 e |S| for the exact distance S. The bounds of the current cell are kept with a margin: the exit at
-// least S_exit (1 + 5e), the entry at most S_entry (1 - 5e). Therefore
-//   s > exit  means S > S_exit:   the far child is certainly beyond the cell;
-//   s < entry means S < S_entry:  the near child is certainly behind it;
-// and otherwise the child is visited. The margins are put in when a bound is stored, once a level, not at each
-// comparison. They also cover the rounding of a hit's distance, so "nearest hit before the entry" is never said too
-// early.
+// |s - S| <= 2.1 e |S| for the exact distance S. A cell's exit is kept with a margin, s (1 + 8e), which is at least
+// S (1 + 5e) where S > 0; its entry is kept as computed, and compared with the plane's distance plus that margin.
+// Therefore
+//   s > exit              means S > S_exit:   the far child is certainly beyond the cell;
+//   s (1 + 8e) < entry    means S < S_entry:  the near child is certainly behind it;
+// and otherwise the child is visited. An entry that comes from the stack is an exit, so the margin is taken off again.
+//
+// Of the hits the nearest in double counts, not in float32: a ray that clips the edge of a convex body enters by one
+// face and leaves by another within a millionth of a step, and a shadow ray from the wrong one would start inside.
+// Cells are left out against that distance rounded up, so "nearest hit before the entry" is never said too early.
 #pragma once
 
 #include "core/arithmetic.h"
@@ -23,12 +26,10 @@ namespace kd {
 
 constexpr uint32_t kNoTriangle = 0xffffffffu;
 
-enum class RayMode { closest, any };
-
 namespace detail {
 
-constexpr float kExitMargin = 1 + 0x1p-21f;   // 8e: (1 - 2.1e)(1 + 8e) > 1 + 5e
-constexpr float kEntryMargin = 1 - 0x1p-20f;  // 16e, of an exit bound that is at most S (1 + 11e)
+constexpr float kMargin = 1 + 0x1p-21f;        // 8e: (1 - 2.1e)(1 + 8e) > 1 + 5e
+constexpr float kResumeMargin = 1 - 0x1p-20f;  // 16e, of an exit, which is at most S (1 + 11e)
 
 struct StackEntry {
   uint32_t node;
@@ -38,9 +39,9 @@ struct StackEntry {
 }  // namespace detail
 
 /// The triangle the ray meets first within [s_min, min(s_max, s_limit)], or with RayMode::any some triangle it meets
-/// there. Returns kNoTriangle if there is none. Of two triangles at the same distance (as float32) the lower index
-/// wins, so the answer depends on no order of visits. `excluded`: a triangle that is never met (a shadow ray's own), or
-/// kNoTriangle.
+/// there. Returns kNoTriangle if there is none. Of two triangles at the same distance (as Test::meets tells it) the
+/// lower index wins, so the answer depends on no order of visits. `excluded`: a triangle that is never met (a shadow
+/// ray's own), or kNoTriangle.
 template <RayMode mode, class Test = ExactTest, class Counter>
 KD_HD inline uint32_t traverse(const ObjectView& object, const LatticeRay& ray, float s_limit, uint32_t excluded,
                                Counter& counter) {
@@ -49,10 +50,11 @@ KD_HD inline uint32_t traverse(const ObjectView& object, const LatticeRay& ray, 
   StackEntry stack[kMaxDepth];
   int depth = 0;
   uint32_t best = kNoTriangle;
-  float s_best = min_of(ray.s_max, s_limit);
+  float s_best = min_of(ray.s_max, s_limit);  // `nearest`, rounded up
+  typename Test::Distance nearest = s_best;
 
-  float s_entry = ray.s_min * kEntryMargin;
-  float s_exit = min_of(ray.s_exit, s_best) * kExitMargin;
+  float s_entry = ray.s_min;
+  float s_exit = min_of(ray.s_exit, s_best) * kMargin;
   float s_resume = s_exit;  // where the cell on top of the stack begins; never beyond where the one below it does
   Node node = load(object.nodes);
 
@@ -67,15 +69,16 @@ KD_HD inline uint32_t traverse(const ObjectView& object, const LatticeRay& ray, 
       // lanes that part over a node take longer than any of its cases.
       const uint32_t near_empty = down ? kUpperEmpty : kLowerEmpty;
       const uint32_t far_empty = near_empty ^ (kLowerEmpty | kUpperEmpty);
-      const bool to_near = s >= s_entry && (node.link & near_empty) == 0;
+      const float s_more = s * kMargin;
+      const bool to_near = s_more >= s_entry && (node.link & near_empty) == 0;
       const bool to_far = s <= s_exit && (node.link & far_empty) == 0;
       const uint32_t first = first_child(node);
       if (to_near && to_far) stack[depth++] = {first + (down ? 0 : 1), s_exit};
       if (to_near) {
-        s_exit = least_of(s_exit, s * kExitMargin);
+        s_exit = least_of(s_exit, s_more);
         if (to_far) s_resume = s_exit;
       } else {
-        s_entry = largest_of(s_entry, s * kEntryMargin);
+        s_entry = largest_of(s_entry, s);
       }
       if (to_near || to_far) {
         node = load(object.nodes + first + (to_near == down ? 1 : 0));
@@ -89,19 +92,21 @@ KD_HD inline uint32_t traverse(const ObjectView& object, const LatticeRay& ray, 
     for (uint32_t r = begin; r < end; ++r) {
       const uint32_t candidate = object.references[r];
       counter.triangle();
-      float s;
-      if (candidate == excluded || !test.meets(load(object.triangles + candidate), s_best, s, counter)) continue;
-      if (s < ray.s_min || s > s_best) continue;
+      typename Test::Distance s;
+      if (candidate == excluded || !test.template meets<mode>(load(object.triangles + candidate), s_best, s, counter))
+        continue;
+      if (s < ray.s_min || s > nearest) continue;
       if constexpr (mode == RayMode::any) return candidate;
-      if (s < s_best || candidate < best) {
-        s_best = s;
+      if (s < nearest || candidate < best) {
+        nearest = s;
+        s_best = rounded_up(s);
         best = candidate;
       }
     }
 
     if (depth == 0) return best;
     // Beyond the nearest hit there is nothing left to find.
-    s_entry = s_resume * kEntryMargin;
+    s_entry = s_resume * kResumeMargin;
     if (s_best < s_entry) return best;
     --depth;
     s_resume = s_exit = stack[depth].s_exit;

@@ -79,6 +79,7 @@ struct Sheared {
 class ExactTest {
  public:
   static constexpr bool kExact = true;
+  using Distance = double;
 
   KD_HD KD_INLINE explicit ExactTest(const LatticeRay& ray)
       : origin_(ray.origin), sign_(ray.direction[ray.axis]), along_x_(ray.axis == 0), along_y_(ray.axis == 1) {
@@ -86,23 +87,27 @@ class ExactTest {
     slope_y_ = -sign_ * (along_y_ ? ray.direction.z : ray.direction.y);
   }
 
-  /// Whether the ray, taken over all s, passes through the triangle, and then its distance s, rounded once from a value
-  /// good to a few ulp of the largest vertex distance. Hits that are certainly beyond `s_limit`, or before 0, need not
-  /// be found.
-  template <class Counter>
-  KD_HD KD_INLINE bool meets(const TriangleVertices& triangle, float s_limit, float& s, Counter& counter) const {
-    const Side side = filter(triangle, s_limit);
+  /// Whether the ray, taken over all s, passes through the triangle, and then its distance s, good to 2^-50 of the
+  /// largest vertex distance. Triangles around an edge or a vertex that the ray passes through are at one distance: for
+  /// the closest hit those it leaves by, as their corners are wound, are put farther by more than the rounding, so that
+  /// a body is entered before it is left. (The limit on s is for tests that gain by it, core/float_triangle.h.)
+  template <RayMode mode, class Counter>
+  KD_HD KD_INLINE bool meets(const TriangleVertices& triangle, float, double& s, Counter& counter) const {
+    const Side side = filter(triangle);
     if (side == Side::outside) return false;
     counter.evaluated_in_double();
     const Weights w = weigh(triangle);
     if (side == Side::unsure && !w.all_on_one_side()) return false;
     // None of the three is on the other side of 0, and not all are 0: that is a triangle seen edge-on, and missed.
-    s = static_cast<float>(w.distance_times_sum(sign_) * w.inverse_sum());
+    s = w.distance_times_sum(sign_) * w.inverse_sum();
+    if constexpr (mode == RayMode::closest) {
+      const bool behind = s < 0;  // and stays there
+      if (side == Side::unsure && !behind && w.touches() && leaves_by(w)) s += kLeavingLater * w.extent();
+    }
     return true;
   }
 
-  /// Where the ray meets a triangle that it passes through; s, u and v are good to a few ulp, and s is the one that
-  /// `meets` rounds.
+  /// Where the ray meets a triangle that it passes through; s, u and v are good to a few ulp.
   KD_HD KD_INLINE TriangleHit locate(const TriangleVertices& triangle) const {
     const Weights w = weigh(triangle);
     const double inverse = w.inverse_sum();
@@ -117,9 +122,15 @@ class ExactTest {
     detail::Sheared<double> a, b, c;
     double u, v, w;
 
-    KD_HD KD_INLINE double inverse_sum() const { return 1 / (u + v + w); }
+    KD_HD KD_INLINE double sum() const { return u + v + w; }
+    KD_HD KD_INLINE double inverse_sum() const { return 1 / sum(); }
     KD_HD KD_INLINE double distance_times_sum(float sign) const {
       return u * (a.along * sign) + v * (b.along * sign) + w * (c.along * sign);
+    }
+    KD_HD KD_INLINE bool touches() const { return u == 0 || v == 0 || w == 0; }
+    KD_HD KD_INLINE double extent() const {
+      return 1 + std::fabs(static_cast<double>(a.along)) + std::fabs(static_cast<double>(b.along)) +
+             std::fabs(static_cast<double>(c.along));
     }
     KD_HD KD_INLINE bool all_on_one_side() const {
       using detail::edge_side;
@@ -143,7 +154,7 @@ class ExactTest {
   /// sheared coordinates is off by at most 2e + O(e^2) of itself; one rounding of the second product and one of the
   /// difference come on top: at most 5e of the products' magnitudes in all, each of which is at most the largest |x|
   /// times the largest |y|. So 10e of that, and 16e cover the roundings of the bound too.
-  KD_HD KD_INLINE Side filter(const TriangleVertices& triangle, float s_limit) const {
+  KD_HD KD_INLINE Side filter(const TriangleVertices& triangle) const {
     const auto a = shear<float>(triangle.a), b = shear<float>(triangle.b), c = shear<float>(triangle.c);
     const float bound = 0x1p-20f * largest_of(std::fabs(a.x), std::fabs(b.x), std::fabs(c.x)) *
                         largest_of(std::fabs(a.y), std::fabs(b.y), std::fabs(c.y));
@@ -152,8 +163,6 @@ class ExactTest {
     const float w = std::fma(a.x, b.y, -(a.y * b.x));
     const float least = least_of(u, v, w), largest = largest_of(u, v, w);
     if (least < -bound && largest > bound) return Side::outside;
-    const float sa = a.along * sign_, sb = b.along * sign_, sc = c.along * sign_;
-    if (least_of(sa, sb, sc) > s_limit || largest_of(sa, sb, sc) < 0) return Side::outside;
     return least > bound || largest < -bound ? Side::inside : Side::unsure;
   }
 
@@ -167,6 +176,13 @@ class ExactTest {
             detail::exact_edge(a.x, a.y, b.x, b.y)};
   }
 
+  /// Whether the triangle's normal, right-handed by its corners, points along the ray. For two of the three axes x and
+  /// y are a left-handed pair.
+  KD_HD KD_INLINE bool leaves_by(const Weights& w) const { return (w.sum() * sign_ > 0) != (along_x_ || along_y_); }
+
+  /// By how much a face that the ray leaves by comes later, of its vertices' distances: 16 times the rounding of s.
+  static constexpr double kLeavingLater = 0x1p-46;
+
   Vec3f origin_;
   float sign_;               // of the direction along its axis
   float slope_x_, slope_y_;  // what x and y lose for each step along the axis, negated
@@ -175,18 +191,17 @@ class ExactTest {
 
 /// ExactTest::meets and, if so, ExactTest::locate.
 template <class Counter>
-KD_HD KD_INLINE bool intersect_triangle(const LatticeRay& ray, const TriangleVertices& triangle, float s_limit,
-                                        TriangleHit& hit, Counter& counter) {
+KD_HD KD_INLINE bool intersect_triangle(const LatticeRay& ray, const TriangleVertices& triangle, TriangleHit& hit,
+                                        Counter& counter) {
   const ExactTest test(ray);
-  float s;
-  if (!test.meets(triangle, s_limit, s, counter)) return false;
+  double s;
+  if (!test.meets<RayMode::any>(triangle, 0, s, counter)) return false;
   hit = test.locate(triangle);
   return true;
 }
-KD_HD KD_INLINE bool intersect_triangle(const LatticeRay& ray, const TriangleVertices& triangle, float s_limit,
-                                        TriangleHit& hit) {
+KD_HD KD_INLINE bool intersect_triangle(const LatticeRay& ray, const TriangleVertices& triangle, TriangleHit& hit) {
   NoCounter counter;
-  return intersect_triangle(ray, triangle, s_limit, hit, counter);
+  return intersect_triangle(ray, triangle, hit, counter);
 }
 
 }  // namespace kd

@@ -2,7 +2,6 @@
 // snapped. For benchmarks.
 #pragma once
 
-#include "core/hierarchy.h"
 #include "core/lattice_ray.h"
 
 namespace kd::render {
@@ -16,19 +15,19 @@ KD_HD inline bool float_ray(Vec3d o, Vec3d d, double t_min, double t_max, int bi
   const double speed = max_of(ax, ay, az);
   if (!(speed > 1e-300)) return false;
   const double top = lattice_max(bits), low = top * -0x1p-16, high = top - low;
-  const Passage p = pass_box({{low, low, low}, {high, high, high}}, o, inverse_direction(d), t_min, t_max);
-  if (!(p.enter <= p.leave)) return false;
+  double t_enter;
+  if (!pass_cube(o, d, low, high, t_min, t_max, t_enter)) return false;
 
   const double t_scale = 1 / speed;
-  ray.origin = vec_cast<float>(o + d * p.enter);
+  ray.origin = vec_cast<float>(o + d * t_enter);
   ray.direction = vec_cast<float>(d * t_scale);
   const auto invert = [](float c) { return c == 0 ? kParallel : 1.0f / c; };
   ray.inverse = {invert(ray.direction.x), invert(ray.direction.y), invert(ray.direction.z)};
   ray.axis = ax >= ay && ax >= az ? 0 : ay >= az ? 1 : 2;
-  ray.t_base = p.enter;
+  ray.t_base = t_enter;
   ray.t_scale = t_scale;
   ray.s_min = 0;
-  ray.s_max = static_cast<float>(min_of((t_max - p.enter) * speed, 1e30));
+  ray.s_max = static_cast<float>(min_of((t_max - t_enter) * speed, 1e30));
   ray.s_exit = exit_distance(ray, static_cast<float>(top));
   return ray.s_exit >= 0;
 }

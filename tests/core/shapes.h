@@ -218,17 +218,18 @@ struct Traced {
   ObjectView view() const { return {tree.nodes.data(), tree.references.data(), triangles.data(), lattice.bits}; }
 };
 
-/// The nearest hit by looking at every triangle: float s, then index.
+/// The nearest hit by looking at every triangle: distance, then index.
 inline uint32_t brute_force(std::span<const TriangleVertices> triangles, const LatticeRay& ray, float s_limit,
                             uint32_t excluded) {
   uint32_t best = kNoTriangle;
-  float s_best = std::fmin(ray.s_max, s_limit);
+  double nearest = std::fmin(ray.s_max, s_limit);
+  const ExactTest test(ray);
+  NoCounter counter;
   for (uint32_t i = 0; i < triangles.size(); ++i) {
-    TriangleHit hit;
-    if (i == excluded || !intersect_triangle(ray, triangles[i], 1e30f, hit)) continue;
-    const auto s = static_cast<float>(hit.s);
-    if (s < ray.s_min || s > s_best || (s == s_best && best != kNoTriangle)) continue;
-    s_best = s;
+    double s;
+    if (i == excluded || !test.meets<RayMode::closest>(triangles[i], 0, s, counter)) continue;
+    if (s < ray.s_min || s > nearest || (s == nearest && best != kNoTriangle)) continue;
+    nearest = s;
     best = i;
   }
   return best;

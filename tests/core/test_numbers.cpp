@@ -5,6 +5,7 @@
 #include <array>
 #include <cfloat>
 #include <cmath>
+#include <limits>
 
 #include "core/node.h"
 #include "core/object_view.h"
@@ -62,6 +63,17 @@ TEST_CASE("lattice: axes without extent") {
   const Lattice point{{1, 2, 3}, {0, 0, 0}, 21};
   CHECK(point.cube().hi == Vec3u{0, 0, 0});
   CHECK_FALSE(is_singular(point.frame()));
+}
+
+TEST_CASE("rounding up to float32") {
+  CHECK(rounded_up(1.0) == 1.0f);
+  CHECK(rounded_up(1 + 0x1p-50) == 1 + 0x1p-23f);
+  CHECK(rounded_up(-1 - 0x1p-50) == -1.0f);
+  CHECK(rounded_up(-1 + 0x1p-50) == -1 + 0x1p-24f);
+  CHECK(rounded_up(0.0) == 0.0f);
+  CHECK(rounded_up(1e-60) == std::numeric_limits<float>::denorm_min());
+  CHECK(rounded_up(-1e-60) == 0.0f);
+  CHECK(rounded_up(0.75f) == 0.75f);
 }
 
 TEST_CASE("packed triples: every number of bits, in as few bytes as hold them") {

@@ -22,8 +22,8 @@ struct IntervalTraversal {
       float s_best = exit;
       for (uint32_t r = first_reference(node); r < first_reference(node) + reference_count(node); ++r) {
         TriangleHit hit;
-        if (!intersect_triangle(ray, object.triangles[object.references[r]], 1e30f, hit)) continue;
-        const auto s = static_cast<float>(hit.s);
+        if (!intersect_triangle(ray, object.triangles[object.references[r]], hit)) continue;
+        const float s = rounded_up(hit.s);
         if (s < entry || s > s_best || (s == s_best && best != kNoTriangle)) continue;
         best = object.references[r];
         s_best = s;

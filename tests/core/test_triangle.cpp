@@ -25,7 +25,7 @@ constexpr double kRoundings = 8;
 void compare(const LatticeRay& ray, const Corners& corners, int bits, Tally& tally) {
   const ExactHit expected = exact_hit(ray, corners, bits);
   TriangleHit hit{};
-  const bool met = intersect_triangle(ray, expanded(corners), 1e30f, hit);
+  const bool met = intersect_triangle(ray, expanded(corners), hit);
   // All that lies before the origin may be left out; what straddles it may not.
   const bool behind = expected.met && expected.s < 0;
   ++tally.cases;
@@ -163,9 +163,9 @@ TEST_CASE("triangle: its corners in any order, the same answer") {
     LatticeRay ray;
     if (!snap_ray(plain.origin, plain.direction, 0, 1e300, 21, ray)) continue;
     TriangleHit hit;
-    const bool met = intersect_triangle(ray, expanded(t), 1e30f, hit);
+    const bool met = intersect_triangle(ray, expanded(t), hit);
     for (const Corners& other : {Corners{t[1], t[2], t[0]}, Corners{t[2], t[1], t[0]}, Corners{t[0], t[2], t[1]}}) {
-      differing += intersect_triangle(ray, expanded(other), 1e30f, hit) != met;
+      differing += intersect_triangle(ray, expanded(other), hit) != met;
     }
   }
   CHECK(differing == 0);
@@ -177,7 +177,7 @@ uint32_t count_hits(const std::vector<TriangleVertices>& triangles, const Lattic
   uint32_t hits = 0;
   TriangleHit hit;
   for (const TriangleVertices& t : triangles) {
-    hits += intersect_triangle(ray, t, 1e30f, hit) && hit.s >= ray.s_min;
+    hits += intersect_triangle(ray, t, hit) && hit.s >= ray.s_min;
   }
   return hits;
 }

@@ -52,7 +52,7 @@ struct Tally {
   int cases = 0, met = 0, missed = 0, undecided = 0, wrong = 0;
 };
 
-template <class Test>
+template <class Method>
 Tally against_reference(int bits, uint64_t seed) {
   Random random(seed);
   const double top = lattice_max(bits);
@@ -74,7 +74,7 @@ Tally against_reference(int bits, uint64_t seed) {
       if (!render::float_ray(origin, target - origin, 0, 1e300, bits, ray)) continue;
       const Reference expected = reference(ray, t);
       FloatHit hit;
-      const bool met = Test{ray}.intersect(t, 1e30f, hit);
+      const bool met = Method::intersect(ray, t, 1e30f, hit);
       tally.undecided += expected.verdict() == 0;
       tally.met += expected.verdict() == 1;
       tally.missed += expected.verdict() == -1;
@@ -84,15 +84,15 @@ Tally against_reference(int bits, uint64_t seed) {
       tally.wrong += std::fabs(hit.u - expected.u) > expected.blur || std::fabs(hit.v - expected.v) > expected.blur;
       // The limit is one of s, whatever the triangle's size.
       FloatHit again;
-      tally.wrong += Test{ray}.intersect(t, hit.s * 0.999f, again);
-      tally.wrong += !Test{ray}.intersect(t, hit.s * 1.001f, again);
+      tally.wrong += Method::intersect(ray, t, hit.s * 0.999f, again);
+      tally.wrong += !Method::intersect(ray, t, hit.s * 1.001f, again);
     }
   }
   return tally;
 }
 
 /// Rays from within a ball at its vertices and at the middles of its edges that meet none of its triangles.
-template <class Test>
+template <class Method>
 int leaks(const Shape& ball, int bits) {
   const std::vector<TriangleVertices> triangles = expanded(ball);
   const double top = lattice_max(bits);
@@ -107,7 +107,7 @@ int leaks(const Shape& ball, int bits) {
         REQUIRE(render::float_ray(origin, target - origin, 0, 1e300, bits, ray));
         FloatHit hit;
         missed += std::none_of(triangles.begin(), triangles.end(),
-                               [&](const auto& t) { return Test{ray}.intersect(t, 1e30f, hit); });
+                               [&](const auto& t) { return Method::intersect(ray, t, 1e30f, hit); });
       }
     }
   }
@@ -156,7 +156,7 @@ TEST_CASE("float ray: the nearest floats to the ray, from where it enters the cu
 TEST_CASE("float tests: as in extended precision, but for what rounding may decide") {
   for (const int bits : {12, 21, 24}) {
     CAPTURE(bits);
-    for (const Tally& tally : {against_reference<MollerTrumboreTest>(bits, 1), against_reference<WoopTest>(bits, 1)}) {
+    for (const Tally& tally : {against_reference<MollerTrumbore>(bits, 1), against_reference<Woop>(bits, 1)}) {
       CHECK(tally.wrong == 0);
       CHECK(tally.met > 15000);
       CHECK(tally.missed > 30000);
@@ -167,8 +167,8 @@ TEST_CASE("float tests: as in extended precision, but for what rounding may deci
 
 TEST_CASE("float tests: Woop's leaves no hole at edges and vertices, Moller and Trumbore's does") {
   const Shape ball = sphere_shape(24, 4);
-  CHECK(leaks<WoopTest>(ball, 24) == 0);
-  CHECK(leaks<MollerTrumboreTest>(ball, 24) > 0);
+  CHECK(leaks<Woop>(ball, 24) == 0);
+  CHECK(leaks<MollerTrumbore>(ball, 24) > 0);
 }
 
 TEST_CASE("trace: float tests in the kernel find what the exact one finds, nearly always, on either form of vertices") {

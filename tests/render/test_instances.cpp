@@ -49,7 +49,7 @@ struct World {
       const uint32_t triangle = brute_force(object.triangles, lattice_ray, 1e30f, kNoTriangle);
       if (triangle == kNoTriangle) continue;
       TriangleHit hit{};
-      intersect_triangle(lattice_ray, object.triangles[triangle], 1e30f, hit);
+      intersect_triangle(lattice_ray, object.triangles[triangle], hit);
       render::reduce(best, {lattice_ray.t_at(hit.s), hit.u, hit.v, i, triangle});
     }
     return best;

@@ -59,7 +59,7 @@ TEST_CASE("trace: hits are those of looking at every triangle, numbered as in th
       TriangleHit at{};
       if (snap_ray({r.ox, r.oy, r.oz}, {r.dx, r.dy, r.dz}, 0, r.t_max, bits, ray)) {
         expected = brute_force(triangles, ray, 1e30f, kNoTriangle);
-        if (expected != kNoTriangle) intersect_triangle(ray, triangles[expected], 1e30f, at);
+        if (expected != kNoTriangle) intersect_triangle(ray, triangles[expected], at);
       }
       wrong += (any->hits[i].primitive < 0) != (expected == kNoTriangle);
       if (expected == kNoTriangle) {

@@ -30,7 +30,7 @@ struct PlainTracer {
   static uint32_t closest(const CaseView& c, const LatticeRay& ray, uint32_t excluded, Counter&) {
     stress::detail::Rank best;
     for_each_hit(c, ray, excluded, [&](const stress::detail::Rank& rank) {
-      if (rank.before(best)) best = rank;
+      if (rank.s_least < best.s_least) best = rank;
     });
     return best.triangle;
   }
@@ -46,8 +46,7 @@ struct PlainTracer {
     for (uint32_t i = 0; i < c.oracle.triangle_count; ++i) {
       TriangleHit hit{};
       if (i == excluded || !meets(c, ray, i, hit)) continue;
-      const auto s = static_cast<float>(hit.s);
-      if (s >= ray.s_min && s <= ray.s_max) visit(stress::detail::Rank{s, i});
+      if (hit.s >= ray.s_min && hit.s <= ray.s_max) visit(stress::detail::Rank{hit.s, hit.s, i});
     }
   }
   static TriangleHit plane_hit(const LatticeRay& ray, const TriangleVertices& t) {
