@@ -98,7 +98,8 @@ TEST_CASE("traversal: closed meshes") {
 }
 
 TEST_CASE("traversal: a body is entered before it is left, however narrowly") {
-  // At its edges and vertices, exactly and by less than float32 can tell: a shadow ray from the wrong face starts inside.
+  // At its edges and vertices, exactly and by less than float32 can tell: a shadow ray from the wrong face starts
+  // inside.
   for (const int bits : {10, 16, 21, 24}) {
     for (const bool box : {true, false}) {
       CAPTURE(bits);
