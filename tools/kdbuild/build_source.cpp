@@ -209,7 +209,7 @@ Result<void> SourceBuild::compile_all() {
 
 /// Whether a mesh seems to fit into one object. Where that is in doubt and building would take long, samples decide.
 Result<bool> SourceBuild::seems_to_fit(const Lot& lot, const mesh::Mesh& mesh) {
-  const SizeEstimate size = estimated_size(mesh, lot.bits);
+  const SizeEstimate size = estimated_size(mesh, stored_vertex_bits(settings_.vertices, lot.bits));
   const uint64_t limit = settings_.max_object_size;
   if (size.rest + size.least_tree > limit) return false;
   if (size.rest + size.most_tree <= limit || mesh.triangles.size() < kWorthSampling) return true;

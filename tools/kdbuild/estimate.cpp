@@ -22,7 +22,7 @@ uint64_t tree_bytes(const build::Tree& tree) {
 
 }  // namespace
 
-SizeEstimate estimated_size(const mesh::Mesh& mesh, int bits) {
+SizeEstimate estimated_size(const mesh::Mesh& mesh, int stored_bits) {
   constexpr uint64_t kTriangleBytes = 3 * sizeof(uint32_t);
   std::vector<bool> used(mesh.positions.size());
   for (const auto& triangle : mesh.triangles) {
@@ -34,8 +34,8 @@ SizeEstimate estimated_size(const mesh::Mesh& mesh, int bits) {
   if (!mesh.normal_indices.empty()) a_triangle += kTriangleBytes;
   if (!mesh.material_ids.empty()) a_triangle += sizeof(uint16_t);
   if (mesh.source_primitives.back() + 1 != triangles) a_triangle += sizeof(uint32_t);
-  const uint64_t rest = triangles * a_triangle + vertices * triple_bytes(bits) + mesh.normals.size() * sizeof(Vec3f) +
-                        mesh.materials.size() * sizeof(Material);
+  const uint64_t rest = triangles * a_triangle + vertices * triple_bytes(stored_bits) +
+                        mesh.normals.size() * sizeof(Vec3f) + mesh.materials.size() * sizeof(Material);
   return {rest, triangles * kLeastTreeBytes, triangles * kMostTreeBytes};
 }
 

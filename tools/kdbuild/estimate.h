@@ -19,8 +19,9 @@ struct SizeEstimate {
   uint64_t most_tree = 0;
 };
 
-/// Of the object of a clean mesh. The bounds of the tree hold for any settings, and are far apart.
-SizeEstimate estimated_size(const mesh::Mesh& mesh, int bits);
+/// Of the object of a clean mesh, with coordinates of `stored_bits` bits (stored_vertex_bits, core/object_view.h). The
+/// bounds of the tree hold for any settings, and are far apart.
+SizeEstimate estimated_size(const mesh::Mesh& mesh, int stored_bits);
 
 /// About how many bytes the tree of a clean mesh will have, on the lattice over `box`: trees of samples are built, a
 /// few thousand triangles about each of some, for what bytes a triangle takes depends on the mesh and on the settings
