@@ -190,18 +190,13 @@ class ExactTest {
 };
 
 /// ExactTest::meets and, if so, ExactTest::locate.
-template <class Counter>
-KD_HD KD_INLINE bool intersect_triangle(const LatticeRay& ray, const TriangleVertices& triangle, TriangleHit& hit,
-                                        Counter& counter) {
+KD_HD KD_INLINE bool intersect_triangle(const LatticeRay& ray, const TriangleVertices& triangle, TriangleHit& hit) {
   const ExactTest test(ray);
+  NoCounter counter;
   double s;
   if (!test.meets<RayMode::any>(triangle, 0, s, counter)) return false;
   hit = test.locate(triangle);
   return true;
-}
-KD_HD KD_INLINE bool intersect_triangle(const LatticeRay& ray, const TriangleVertices& triangle, TriangleHit& hit) {
-  NoCounter counter;
-  return intersect_triangle(ray, triangle, hit, counter);
 }
 
 }  // namespace kd

@@ -5,9 +5,7 @@
 // section of triples ends with kTripleMargin bytes of 0.
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "core/vec.h"
@@ -68,7 +66,7 @@ constexpr bool is_triples(size_t section_bytes, int bits) {
 
 /// Packs all of these triples into a section; `Triple` has three numbers below 2^bits under [].
 template <class Triple>
-std::vector<uint8_t> pack_triples(std::span<const Triple> triples, int bits) {
+std::vector<uint8_t> pack_triples(const std::vector<Triple>& triples, int bits) {
   std::vector<uint8_t> section(triples.size() * triple_bytes(bits) + kTripleMargin);
   uint8_t* at = section.data();
   const auto put = [](uint8_t* to, uint64_t value) {
@@ -82,9 +80,4 @@ std::vector<uint8_t> pack_triples(std::span<const Triple> triples, int bits) {
   }
   return section;
 }
-template <class Triple>
-std::vector<uint8_t> pack_triples(const std::vector<Triple>& triples, int bits) {
-  return pack_triples(std::span(triples), bits);
-}
-
 }  // namespace kd
