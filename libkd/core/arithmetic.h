@@ -28,12 +28,48 @@ KD_HD KD_INLINE constexpr T max_of(T a, T b, T c) {
   return max_of(max_of(a, b), c);
 }
 
-/// The least and the largest of numbers none of which is NaN. Of zeros of both signs either may come out, so they are
-/// for bounds and comparisons, not for results. A device has one instruction for each.
+/// The least and the largest of two numbers; where the first is NaN, the second. Of zeros of both signs either may come
+/// out, so they are for bounds and comparisons, not for results. A device has one instruction for each.
 KD_HD KD_INLINE float least_of(float a, float b) { return KD_ON_DEVICE ? fminf(a, b) : min_of(a, b); }
 KD_HD KD_INLINE float largest_of(float a, float b) { return KD_ON_DEVICE ? fmaxf(a, b) : max_of(a, b); }
 KD_HD KD_INLINE float least_of(float a, float b, float c) { return least_of(least_of(a, b), c); }
 KD_HD KD_INLINE float largest_of(float a, float b, float c) { return largest_of(largest_of(a, b), c); }
+
+/// Whether not all of three numbers have the same sign bit.
+KD_HD KD_INLINE bool signs_differ(float a, float b, float c) {
+  const auto bits = [](float x) { return std::bit_cast<uint32_t>(x); };
+  return (((bits(a) ^ bits(b)) | (bits(b) ^ bits(c))) & 0x80000000u) != 0;
+}
+
+/// 1 / x, rounded to nearest, for |x| in [2^-100, 2^100]. A device's own division takes as long again to find out
+/// whether x is in such a range; on an H100 the two agree for every significand.
+KD_HD KD_INLINE float reciprocal(float x) {
+#if KD_ON_DEVICE
+  float approximate;
+  asm("rcp.approx.ftz.f32 %0, %1;" : "=f"(approximate) : "f"(x));
+  return fmaf(approximate, fmaf(-x, approximate, 1.0f), approximate);
+#else
+  return 1 / x;
+#endif
+}
+
+/// 1 / x to 2^-52 of itself, for |x| in [2^-100, 2^100]: from the float32 below it by a step of third order.
+KD_HD KD_INLINE double reciprocal(double x) {
+  const double first = reciprocal(static_cast<float>(x)), error = std::fma(-x, first, 1.0);
+  return std::fma(first, std::fma(error, error, error), first);
+}
+
+/// 2^exponent, for a normal one.
+KD_HD KD_INLINE double power_of_two(int exponent) {
+  return std::bit_cast<double>(static_cast<uint64_t>(1023 + exponent) << 52);
+}
+
+/// The multiple of `grid`, a power of two, that is nearest to x, the even one of two, if |x| < 2^51 grid; beyond that
+/// some number near x. Two additions, where a device takes a conversion's time for rint.
+KD_HD KD_INLINE double rounded_to(double x, double grid) {
+  const double shift = 0x1.8p52 * grid;  // doubles around it are multiples of the grid
+  return (x + shift) - shift;
+}
 
 /// The least float32 that is not below x.
 KD_HD KD_INLINE float rounded_up(float x) { return x; }

@@ -27,7 +27,10 @@ struct InverseFrame {
   Vec3d y_row{0, 1, 0};
   Vec3d z_row{0, 0, 1};
 
-  KD_HD KD_INLINE Vec3d apply_vector(Vec3d v) const { return {dot(x_row, v), dot(y_row, v), dot(z_row, v)}; }
+  KD_HD KD_INLINE Vec3d apply_vector(Vec3d v) const {
+    const auto along = [&](Vec3d row) { return std::fma(row.x, v.x, std::fma(row.y, v.y, row.z * v.z)); };
+    return {along(x_row), along(y_row), along(z_row)};
+  }
   KD_HD KD_INLINE Vec3d apply_point(Vec3d p) const { return apply_vector(p - point); }
   /// Takes a normal of the framed space back out: the inverse transpose of the frame's axes.
   KD_HD KD_INLINE Vec3d normal_to_outer(Vec3d n) const { return x_row * n.x + y_row * n.y + z_row * n.z; }

@@ -28,7 +28,7 @@ struct LatticeRay {
   int axis = 0;
   float s_min = 0;  // the ray's own interval, >= 0
   float s_max = 0;
-  float s_exit = 0;  // where the ray as snapped has left the cube, rounded up
+  float s_exit = 0;  // where the ray as snapped leaves the cube
   double t_base = 0;
   double t_scale = 1;
 
@@ -40,25 +40,23 @@ struct LatticeRay {
 /// rule of the triangle test moves it (`core/triangle.h`).
 constexpr float kParallel = 1152921504606846976.0f;  // 2^60
 
-/// Where the snapped ray leaves the cube [0, top]^3, rounded up; negative if it never is inside. Computed from what was
-/// snapped, where differences are exact, so it is right however far away the ray came from; the two roundings of each
-/// distance are less than the margin.
+/// Where the snapped ray leaves the cube [0, top]^3, off by at most 2.1 x 2^-24 of itself, as all distances of planes;
+/// negative if it never is inside. Computed from what was snapped, where differences are exact, so it is right however
+/// far away the ray came from.
 KD_HD KD_INLINE float exit_distance(const LatticeRay& ray, float top) {
-  float s = 1e30f;
-  for (int axis = 0; axis < 3; ++axis) {
-    const float inverse = ray.inverse[axis];
-    s = min_of(s, ((inverse > 0 ? top : 0.0f) - ray.origin[axis]) * inverse);
-  }
-  return s * (s > 0 ? 1 + 0x1p-22f : 1.0f);
+  const auto leaves = [&](float origin, float inverse) { return ((inverse > 0 ? top : 0.0f) - origin) * inverse; };
+  return least_of(leaves(ray.origin.x, ray.inverse.x), leaves(ray.origin.y, ray.inverse.y),
+                  leaves(ray.origin.z, ray.inverse.z));
 }
 
-/// Where the ray first is in the cube [low, high]^3; false if it never is within [t_min, t_max].
+/// Where the ray first is in the cube [low, high]^3; false if it never is within [t_min, t_max], or is not finite.
 KD_HD KD_INLINE bool pass_cube(Vec3d o, Vec3d d, double low, double high, double t_min, double t_max, double& t_enter) {
   t_enter = t_min;
-  if (!(t_min <= t_max)) return false;
   const auto within = [&](double x) { return x >= low && x <= high; };
   // Most rays of a scene start inside; they are spared the divisions.
-  if (within(o.x + t_min * d.x) && within(o.y + t_min * d.y) && within(o.z + t_min * d.z)) return true;
+  if (within(std::fma(t_min, d.x, o.x)) && within(std::fma(t_min, d.y, o.y)) && within(std::fma(t_min, d.z, o.z)))
+    return t_min <= t_max;
+  if (!(t_min <= t_max) || !is_finite(o) || !is_finite(d)) return false;
   double t_exit = t_max;
   for (int axis = 0; axis < 3; ++axis) {
     const double oa = o[axis], da = d[axis];
@@ -73,45 +71,51 @@ KD_HD KD_INLINE bool pass_cube(Vec3d o, Vec3d d, double low, double high, double
   return t_enter <= t_exit;
 }
 
+/// The axis of the largest component.
+KD_HD KD_INLINE int largest_axis(Vec3d d) {
+  const double ax = std::fabs(d.x), ay = std::fabs(d.y), az = std::fabs(d.z);
+  return ax >= ay && ax >= az ? 0 : ay >= az ? 1 : 2;
+}
+
 /// Takes a ray that is already in lattice space onto the grid. `o` and `d` are in lattice steps; they may be anything,
 /// far away and NaN included. False: the ray has no point in the cube within [t_min, t_max], or is not a ray.
 KD_HD inline bool snap_ray(Vec3d o, Vec3d d, double t_min, double t_max, int bits, LatticeRay& ray) {
-  if (!is_finite(o) || !is_finite(d)) return false;
-  const double ax = std::fabs(d.x), ay = std::fabs(d.y), az = std::fabs(d.z);
-  const int k = ax >= ay && ax >= az ? 0 : ay >= az ? 1 : 2;
-  const double speed = max_of(ax, ay, az);
+  const int k = largest_axis(d);
+  const double ok = o[k], dk = d[k], speed = std::fabs(dk);
   if (!(speed > 1e-300)) return false;
 
-  const double grid = 1.0 / static_cast<double>(1u << (kMaxLatticeBits - bits));
-  const double top = lattice_max(bits);
+  const double grid = power_of_two(bits - kMaxLatticeBits);
+  const auto top = static_cast<float>(lattice_max(bits));
 
   // Where the ray enters the cube, widened by a grid step on every side: snapping may bring it that much nearer.
   double t_enter;
   if (!pass_cube(o, d, -grid, top + grid, t_min, t_max, t_enter)) return false;
 
   // The origin: on the last grid plane across k at or before the entry, inside the cube.
-  const double steps = 1 / grid, t_scale = 1 / speed;
-  const double ok = o[k], dk = d[k];
-  const double entry = (ok + t_enter * dk) * steps;
-  const double plane = min_of(max_of((dk > 0 ? std::floor(entry) : std::ceil(entry)) * grid, 0.0), top);
-  const double t_base = (dk > 0 ? plane - ok : ok - plane) * t_scale;
-  const auto place = [&](double oa, double da, bool along) {
-    const double p = std::rint((oa + t_base * da) * steps) * grid;
-    return static_cast<float>(along ? plane : min_of(max_of(p, -1.0), top + 1));
+  const double sign = std::copysign(1.0, dk), entry = std::fma(t_enter, dk, ok) * sign;
+  const double nearest = rounded_to(entry, grid), before = nearest > entry ? nearest - grid : nearest;
+  const float plane = least_of(largest_of(static_cast<float>(before * sign), 0.0f), top);
+  const double t_scale = 1 / speed, t_base = (plane - ok) * sign * t_scale;
+  const auto place = [&](int axis) {
+    const auto p = static_cast<float>(rounded_to(std::fma(t_base, d[axis], o[axis]), grid));
+    return axis == k ? plane : least_of(largest_of(p, -1.0f), top + 1);
   };
-  ray.origin = {place(o.x, d.x, k == 0), place(o.y, d.y, k == 1), place(o.z, d.z, k == 2)};
+  ray.origin = {place(0), place(1), place(2)};
 
-  const auto turn = [&](double da) { return static_cast<float>(std::rint(da * t_scale * 0x1p24) * 0x1p-24); };
+  const auto turn = [&](double da) { return static_cast<float>(rounded_to(da * t_scale, 0x1p-24)); };
   ray.direction = {turn(d.x), turn(d.y), turn(d.z)};
-  const auto invert = [](float c) { return c == 0 ? kParallel : 1.0f / c; };
+  const auto invert = [](float c) {
+    const float inverse = reciprocal(c);
+    return c == 0 ? kParallel : inverse;
+  };
   ray.inverse = {invert(ray.direction.x), invert(ray.direction.y), invert(ray.direction.z)};
 
   ray.axis = k;
   ray.t_base = t_base;
   ray.t_scale = t_scale;
-  ray.s_min = static_cast<float>(max_of((t_min - t_base) * speed, 0.0));
-  ray.s_max = static_cast<float>(min_of((t_max - t_base) * speed, 1e30));
-  ray.s_exit = exit_distance(ray, static_cast<float>(top));
+  ray.s_min = largest_of(static_cast<float>((t_min - t_base) * speed), 0.0f);
+  ray.s_max = least_of(static_cast<float>((t_max - t_base) * speed), 1e30f);
+  ray.s_exit = exit_distance(ray, top);
   return ray.s_exit >= 0;
 }
 

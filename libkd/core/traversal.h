@@ -63,28 +63,22 @@ KD_HD inline uint32_t traverse(const ObjectView& object, const LatticeRay& ray, 
       counter.node();
       const int axis = split_axis(node);
       const float inverse = ray.inverse[axis];
-      const float s = (split_plane(node) - ray.origin[axis]) * inverse;
-      const bool down = inverse < 0;
-      // Empty children are neither visited nor remembered. On a GPU both children are decided on without a branch:
-      // lanes that part over a node take longer than any of its cases.
-      const uint32_t near_empty = down ? kUpperEmpty : kLowerEmpty;
-      const uint32_t far_empty = near_empty ^ (kLowerEmpty | kUpperEmpty);
-      const float s_more = s * kMargin;
+      const float s = (split_plane(node) - ray.origin[axis]) * inverse, s_more = s * kMargin;
+      // Integer arithmetic in place of branches: on a GPU, lanes that part over a node take longer than any of its
+      // cases. Empty children are neither visited nor remembered.
+      const uint32_t down = std::bit_cast<uint32_t>(inverse) >> 31;
+      const uint32_t near = first_child(node) + down, far = first_child(node) + 1 - down;
+      const uint32_t near_empty = kLowerEmpty << down, far_empty = near_empty ^ (kLowerEmpty | kUpperEmpty);
       const bool to_near = s_more >= s_entry && (node.link & near_empty) == 0;
       const bool to_far = s <= s_exit && (node.link & far_empty) == 0;
-      const uint32_t first = first_child(node);
-      if (to_near && to_far) stack[depth++] = {first + (down ? 0 : 1), s_exit};
-      if (to_near) {
-        s_exit = least_of(s_exit, s_more);
-        if (to_far) s_resume = s_exit;
-      } else {
-        s_entry = largest_of(s_entry, s);
+      if (to_near && to_far) {
+        stack[depth] = {far, s_exit};
+        ++depth;
+        s_resume = least_of(s_exit, s_more);
       }
-      if (to_near || to_far) {
-        node = load(object.nodes + first + (to_near == down ? 1 : 0));
-      } else {
-        node = make_leaf(0, 0);
-      }
+      if (to_near) s_exit = least_of(s_exit, s_more);
+      if (!to_near) s_entry = largest_of(s_entry, s);
+      node = load(object.nodes + (to_near ? near : to_far ? far : kEmptyLeaf));
     }
 
     counter.leaf();

@@ -3,8 +3,7 @@
 // The triangle is sheared along the ray into the plane across the ray's axis (Woop, Benthin, Wald, "Watertight
 // Ray/Triangle Intersection", JCGT 2013), where the ray is the origin and the signs of three edge functions say whether
 // it passes inside. They are evaluated twice:
-//   - in float32, with a proven bound of their error: two signs that are certain and differ mean a miss, three that are
-//     certain and agree a hit;
+//   - in float32, with a proven bound of their error: three signs that are certain decide, by whether they differ;
 //   - for what is left, and for a hit's distance, in double, where the sheared coordinates are exact
 //     (`core/lattice_ray.h`) and a difference of products computed after Kahan has the exact sign, zero included
 //     (Jeannerod, Louvet, Muller, "Further analysis of Kahan's algorithm for the accurate computation of 2x2
@@ -93,16 +92,16 @@ class ExactTest {
   /// a body is entered before it is left. (The limit on s is for tests that gain by it, core/float_triangle.h.)
   template <RayMode mode, class Counter>
   KD_HD KD_INLINE bool meets(const TriangleVertices& triangle, float, double& s, Counter& counter) const {
-    const Side side = filter(triangle);
-    if (side == Side::outside) return false;
+    const Decision decision = filter(triangle);
+    if (decision.certain && decision.apart) return false;
     counter.evaluated_in_double();
     const Weights w = weigh(triangle);
-    if (side == Side::unsure && !w.all_on_one_side()) return false;
+    if (!decision.certain && !w.all_on_one_side()) return false;
     // None of the three is on the other side of 0, and not all are 0: that is a triangle seen edge-on, and missed.
     s = w.distance_times_sum(sign_) * w.inverse_sum();
     if constexpr (mode == RayMode::closest) {
       const bool behind = s < 0;  // and stays there
-      if (side == Side::unsure && !behind && w.touches() && leaves_by(w)) s += kLeavingLater * w.extent();
+      if (!decision.certain && !behind && w.touches() && leaves_by(w)) s += kLeavingLater * w.extent();
     }
     return true;
   }
@@ -115,17 +114,15 @@ class ExactTest {
   }
 
  private:
-  enum class Side { outside, inside, unsure };
-
   /// The three edge functions, exact in sign: each the weight of the vertex across from its edge.
   struct Weights {
     detail::Sheared<double> a, b, c;
     double u, v, w;
 
     KD_HD KD_INLINE double sum() const { return u + v + w; }
-    KD_HD KD_INLINE double inverse_sum() const { return 1 / sum(); }
+    KD_HD KD_INLINE double inverse_sum() const { return reciprocal(sum()); }
     KD_HD KD_INLINE double distance_times_sum(float sign) const {
-      return u * (a.along * sign) + v * (b.along * sign) + w * (c.along * sign);
+      return std::fma(u, a.along, std::fma(v, b.along, w * c.along)) * sign;
     }
     KD_HD KD_INLINE bool touches() const { return u == 0 || v == 0 || w == 0; }
     KD_HD KD_INLINE double extent() const {
@@ -150,20 +147,20 @@ class ExactTest {
             std::fma(static_cast<T>(slope_y_), static_cast<T>(along), y), along};
   }
 
-  /// The decision in float32, which may be that it cannot tell. With unit roundoff e = 2^-24 each product of two
-  /// sheared coordinates is off by at most 2e + O(e^2) of itself; one rounding of the second product and one of the
-  /// difference come on top: at most 5e of the products' magnitudes in all, each of which is at most the largest |x|
-  /// times the largest |y|. So 10e of that, and 16e cover the roundings of the bound too.
-  KD_HD KD_INLINE Side filter(const TriangleVertices& triangle) const {
+  struct Decision {
+    bool certain;
+    bool apart;  // the edge functions have not all one sign: the ray passes beside the triangle
+  };
+
+  /// In float32. With unit roundoff e = 2^-24, an edge function X - T, both products of two sheared coordinates, has X
+  /// off by 2e |X| and T by 3e |T| before they are subtracted and once more rounded. Were the sign of the result wrong,
+  /// |X| would be at most |T|, to terms of e, and the result at most 5e |T|. So 8e of the largest T bounds all three.
+  KD_HD KD_INLINE Decision filter(const TriangleVertices& triangle) const {
     const auto a = shear<float>(triangle.a), b = shear<float>(triangle.b), c = shear<float>(triangle.c);
-    const float bound = 0x1p-20f * largest_of(std::fabs(a.x), std::fabs(b.x), std::fabs(c.x)) *
-                        largest_of(std::fabs(a.y), std::fabs(b.y), std::fabs(c.y));
-    const float u = std::fma(b.x, c.y, -(b.y * c.x));
-    const float v = std::fma(c.x, a.y, -(c.y * a.x));
-    const float w = std::fma(a.x, b.y, -(a.y * b.x));
-    const float least = least_of(u, v, w), largest = largest_of(u, v, w);
-    if (least < -bound && largest > bound) return Side::outside;
-    return least > bound || largest < -bound ? Side::inside : Side::unsure;
+    const float tu = b.y * c.x, tv = c.y * a.x, tw = a.y * b.x;
+    const float u = std::fma(b.x, c.y, -tu), v = std::fma(c.x, a.y, -tv), w = std::fma(a.x, b.y, -tw);
+    const float bound = 0x1p-21f * largest_of(std::fabs(tu), std::fabs(tv), std::fabs(tw));
+    return {least_of(std::fabs(u), std::fabs(v), std::fabs(w)) > bound, signs_differ(u, v, w)};
   }
 
   KD_HD KD_INLINE Weights weigh(const TriangleVertices& triangle) const {

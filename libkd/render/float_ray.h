@@ -10,9 +10,8 @@ namespace kd::render {
 /// is larger by 2^-16 on every side: no hit on the object's box is lost to the rounding of s. Traversal's margins
 /// (core/traversal.h) hold for such a ray too: plane - origin is rounded once more, so 2.1 e there becomes 3.1 e.
 KD_HD inline bool float_ray(Vec3d o, Vec3d d, double t_min, double t_max, int bits, LatticeRay& ray) {
-  if (!is_finite(o) || !is_finite(d)) return false;
-  const double ax = std::fabs(d.x), ay = std::fabs(d.y), az = std::fabs(d.z);
-  const double speed = max_of(ax, ay, az);
+  const int k = largest_axis(d);
+  const double speed = std::fabs(d[k]);
   if (!(speed > 1e-300)) return false;
   const double top = lattice_max(bits), low = top * -0x1p-16, high = top - low;
   double t_enter;
@@ -23,7 +22,7 @@ KD_HD inline bool float_ray(Vec3d o, Vec3d d, double t_min, double t_max, int bi
   ray.direction = vec_cast<float>(d * t_scale);
   const auto invert = [](float c) { return c == 0 ? kParallel : 1.0f / c; };
   ray.inverse = {invert(ray.direction.x), invert(ray.direction.y), invert(ray.direction.z)};
-  ray.axis = ax >= ay && ax >= az ? 0 : ay >= az ? 1 : 2;
+  ray.axis = k;
   ray.t_base = t_enter;
   ray.t_scale = t_scale;
   ray.s_min = 0;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/arithmetic.h"
 #include "core/node.h"
 #include "core/object_view.h"
 #include "core/power.h"
@@ -14,6 +15,26 @@
 
 using namespace kd;
 using namespace kd::test;
+
+TEST_CASE("arithmetic: signs, reciprocals, rounding to a grid") {
+  CHECK_FALSE(signs_differ(1, 2, 0.0f));
+  CHECK_FALSE(signs_differ(-1, -2, -0.0f));
+  for (const std::array<float, 3> f : {std::array{-1.0f, 2.0f, 3.0f}, {1.0f, -2.0f, 3.0f}, {1.0f, 2.0f, -3.0f}}) {
+    CHECK(signs_differ(f[0], f[1], f[2]));
+    CHECK(signs_differ(-f[0], -f[1], -f[2]));
+  }
+  Random random(3);
+  long double worst = 0;
+  for (int i = 0; i < 200000; ++i) {
+    const double x =
+        std::ldexp(random.real(1, 2), static_cast<int>(random.integer(0, 200)) - 100) * (random.chance(0.5) ? 1 : -1);
+    worst = std::max(worst, std::fabs(static_cast<long double>(reciprocal(x)) * x - 1));
+    const double grid = power_of_two(static_cast<int>(random.integer(0, 40)) - 30);
+    const double y = random.real(-1, 1) * std::ldexp(grid, static_cast<int>(random.integer(0, 51)));
+    REQUIRE(rounded_to(y, grid) == std::nearbyint(y / grid) * grid);
+  }
+  CHECK(worst <= 0x1p-52L);
+}
 
 TEST_CASE("lattice: there and back is off by at most half a step") {
   for (const int bits : {1, 10, 12, 16, 18, 21, 24}) {
