@@ -64,6 +64,9 @@ KD_HD KD_INLINE double power_of_two(int exponent) {
   return std::bit_cast<double>(static_cast<uint64_t>(1023 + exponent) << 52);
 }
 
+/// Of a finite x > 0, as a double's bits have it: -1023 for denormal ones.
+KD_HD KD_INLINE int exponent_of(double x) { return static_cast<int>(std::bit_cast<uint64_t>(x) >> 52) - 1023; }
+
 /// The multiple of `grid`, a power of two, that is nearest to x, the even one of two, if |x| < 2^51 grid; beyond that
 /// some number near x. Two additions, where a device takes a conversion's time for rint.
 KD_HD KD_INLINE double rounded_to(double x, double grid) {

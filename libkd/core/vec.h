@@ -56,15 +56,21 @@ template <class T>
 KD_HD KD_INLINE T length(Vec3<T> a) {
   return std::sqrt(dot(a, a));
 }
-/// The vector scaled to length 1; the zero vector is returned as it is. Scaled by its largest component first,
+/// A vector as length and direction, of length 1; the zero vector is its own direction. Scaled by a power of two first,
 /// so that no length between 1e-300 and 1e300 overflows or vanishes.
-KD_HD KD_INLINE Vec3d normalised(Vec3d a) {
+struct Polar {
+  Vec3d direction;
+  double length;
+};
+KD_HD KD_INLINE Polar polar(Vec3d a) {
   const double largest = max_of(std::fabs(a.x), std::fabs(a.y), std::fabs(a.z));
-  if (!(largest > 0)) return a;
-  const Vec3d b{a.x / largest, a.y / largest, a.z / largest};
+  if (!(largest > 0)) return {a, 0};
+  const int exponent = min_of(exponent_of(largest), 1022);
+  const Vec3d b = a * power_of_two(-exponent);
   const double l = length(b);
-  return {b.x / l, b.y / l, b.z / l};
+  return {b * reciprocal(l), l * power_of_two(exponent)};
 }
+KD_HD KD_INLINE Vec3d normalised(Vec3d a) { return polar(a).direction; }
 KD_HD KD_INLINE bool is_finite(Vec3d a) {
   // x - x is 0 for a finite x and NaN for an infinity or a NaN.
   return (a.x - a.x) + (a.y - a.y) + (a.z - a.z) == 0;

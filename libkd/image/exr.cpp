@@ -12,9 +12,11 @@
 #include <ImfOutputFile.h>
 #include <ImfStdIO.h>
 #include <ImfStringAttribute.h>
+#include <ImfThreading.h>
 #include <fmt/format.h>
 
 #include "sys/atomic_file.h"
+#include "sys/parallel.h"
 
 namespace kd::image {
 
@@ -67,12 +69,16 @@ bool write_film(const std::string& path, const Film& film, const ExrHeader& head
   add_channels(file_header, frame, film);
   add_attributes(file_header, header);
 
+  // Blocks of lines are compressed side by side; the bytes are the same for any number of threads.
+  const auto threads = static_cast<int>(thread_count());
+  if (Imf::globalThreadCount() < threads) Imf::setGlobalThreadCount(threads);
+
   // OutputFile's destructor writes the line table and swallows what goes wrong then; the stream remembers it.
   std::ofstream stream(path, std::ios::binary);
   if (!stream) return false;
   {
     Imf::StdOFStream exr_stream(stream, path.c_str());
-    Imf::OutputFile file(exr_stream, file_header);
+    Imf::OutputFile file(exr_stream, file_header, threads);
     file.setFrameBuffer(frame);
     file.writePixels(static_cast<int>(film.height));
   }

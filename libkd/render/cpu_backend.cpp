@@ -75,9 +75,7 @@ Result<Frame> cpu_render(const LoadedScene& scene, const RenderSettings& setting
   out.stats.object_bytes = objects.bytes;
 
   const size_t pixels = size_t{scene.film.width} * scene.film.height;
-  std::vector<Vec3d> directions(pixels);
   std::vector<SurfaceHit> hits(pixels);
-  std::vector<uint8_t> visibility(scene.lights.empty() ? 0 : pixels);
   out.film.width = scene.film.width;
   out.film.height = scene.film.height;
   out.film.colour.resize(4 * pixels);
@@ -86,8 +84,7 @@ Result<Frame> cpu_render(const LoadedScene& scene, const RenderSettings& setting
   for (image::Aov aov : settings.aovs) {
     out.film.aovs.push_back({aov, std::vector<uint32_t>(static_cast<size_t>(image::aov_row(aov).components) * pixels)});
   }
-  out.stats.frame_bytes =
-      pixels * (sizeof(Vec3d) + sizeof(SurfaceHit) + 4 * sizeof(float)) + visibility.size() + out.preview.size();
+  out.stats.frame_bytes = pixels * (sizeof(SurfaceHit) + sizeof(Pixel)) + out.preview.size();
   for (image::AovBuffer& buffer : out.film.aovs) {
     targets.push_back({buffer.aov, buffer.words.data()});
     out.stats.frame_bytes += buffer.words.size() * sizeof(uint32_t);
@@ -100,14 +97,12 @@ Result<Frame> cpu_render(const LoadedScene& scene, const RenderSettings& setting
   frame.camera = scene.camera;
   frame.width = scene.film.width;
   frame.height = scene.film.height;
-  frame.directions = directions.data();
   frame.hits = hits.data();
-  frame.visibility = visibility.data();
-  frame.colour = out.film.colour.data();
+  frame.colour = reinterpret_cast<Pixel*>(out.film.colour.data());
   frame.preview = out.preview.data();
   frame.inverse_gamma = 1 / settings.gamma;
 
-  const PipelinePlan plan{static_cast<uint32_t>(scene.lights.size()), targets, settings.preview,
+  const PipelinePlan plan{static_cast<uint32_t>(scene.lights.size()), instances.size() == 1, targets, settings.preview,
                           settings.gamma_on_film};
   SharedProgress progress(settings.progress);
   size_t launched = 0;
@@ -123,6 +118,7 @@ Result<Frame> cpu_render(const LoadedScene& scene, const RenderSettings& setting
   run_pipeline(frame, plan, launch, launch);
   if (progress.cancelled()) return Error{ErrorClass::interrupted, "", "interrupted"};
   out.stats.render_seconds = whole.seconds();
+  out.stats.primary_rays = pixels;
   return out;
 }
 

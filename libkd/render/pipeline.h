@@ -19,13 +19,14 @@ struct AovTarget {
 };
 
 struct PipelinePlan {
-  uint32_t light_count = 0;  // lights that are black are not in the scene view
+  uint32_t light_count = 0;   // lights that are black are not in the scene view
+  bool one_instance = false;  // the scene is that and needs no hierarchy
   std::span<const AovTarget> aovs;
   bool gamma_on_preview = false;
   bool gamma_on_film = false;
 
   /// How many launches there are if some ray hits something.
-  size_t launches() const { return 3 + 2 * light_count + aovs.size() + gamma_on_preview + gamma_on_film; }
+  size_t launches() const { return 1 + max_of(light_count, 1u) + aovs.size() + gamma_on_preview + gamma_on_film; }
 };
 
 /// Launches the stages that have work, in order. `launch(stage)` runs stage(pixel) for every pixel and may return
@@ -34,12 +35,18 @@ struct PipelinePlan {
 template <class Launch, class LaunchAndCount>
 void run_pipeline(const FrameView& frame, const PipelinePlan& plan, Launch&& launch,
                   LaunchAndCount&& launch_and_count) {
-  launch(RayGeneration{frame});
-  const uint64_t hits = launch_and_count(ObjectIntersection{frame});  // and intersection reduction, hit by hit
-  launch(Ambient{frame});
-  for (uint32_t light = 0; light < plan.light_count && hits > 0; ++light) {
-    launch(Shadow{frame, light});
-    launch(Colour{frame, light});
+  const auto traced_stages = [&]<class Instances>(Instances) {
+    // Ray generation, intersection, and reduction hit by hit.
+    const uint64_t hits = launch_and_count(ObjectIntersection<Instances>{frame});
+    if (hits == 0 || plan.light_count == 0) launch(Ambient{frame});
+    for (uint32_t light = 0; light < plan.light_count && hits > 0; ++light) {
+      launch(Lighting<Instances>{frame, light});
+    }
+  };
+  if (plan.one_instance) {
+    traced_stages(OnlyInstance{});
+  } else {
+    traced_stages(ThroughHierarchy{});
   }
   for (const AovTarget& target : plan.aovs) launch(WriteAov{frame, target.aov, target.words});
   if (plan.gamma_on_preview) launch(GammaPreview{frame});

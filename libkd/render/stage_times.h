@@ -20,9 +20,8 @@ inline void add_stage_time(RenderStats& stats, std::string_view stage, double se
 
 /// What a stage's return values add up to, where it counts something.
 inline void add_stage_count(RenderStats& stats, std::string_view stage, uint64_t count) {
-  if (stage == RayGeneration::kName) stats.primary_rays += count;
-  if (stage == ObjectIntersection::kName) stats.primary_hits += count;
-  if (stage == Shadow::kName) stats.shadow_rays += count;
+  if (stage == kIntersectionName) stats.primary_hits += count;
+  if (stage == kLightingName) stats.shadow_rays += count;
 }
 
 }  // namespace kd::render

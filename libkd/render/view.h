@@ -64,8 +64,11 @@ struct SurfaceHit {
   uint32_t triangle = kNone;  // in the object
 };
 
-/// What the shadow stage found out about one light.
-enum Visibility : uint8_t { kNotAsked = 0, kOccluded = 1, kLit = 2 };
+/// A pixel of the film: red, green, blue and coverage.
+struct alignas(16) Pixel {
+  Vec3f colour;
+  float alpha;
+};
 
 /// The buffers of one frame, one element a pixel in row order. Those that no stage uses are null.
 struct FrameView {
@@ -73,10 +76,8 @@ struct FrameView {
   CameraView camera;
   uint32_t width = 0;
   uint32_t height = 0;
-  Vec3d* directions = nullptr;
   SurfaceHit* hits = nullptr;
-  uint8_t* visibility = nullptr;
-  float* colour = nullptr;     // RGBA
+  Pixel* colour = nullptr;
   uint8_t* preview = nullptr;  // RGB
   double inverse_gamma = 1;
 };

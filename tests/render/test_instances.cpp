@@ -108,6 +108,25 @@ TEST_CASE("instances: the nearest hit of 200 random ones") {
   }
 }
 
+TEST_CASE("instances: the only one, with a hierarchy and without") {
+  Random random(12);
+  int hits = 0, wrong = 0;
+  for (int i = 0; i < 20; ++i) {
+    const World world(random_parts(1, 30 + static_cast<uint64_t>(i), 3));
+    const render::SceneView view = world.view();
+    for (int k = 0; k < 500; ++k) {
+      const Ray ray{random.vector(14), random.vector(1), 0, random.chance(0.2) ? random.real(0, 30) : 1e300};
+      const render::SurfaceHit expected = render::closest_hit<render::ThroughHierarchy>(view, ray);
+      const render::SurfaceHit found = render::closest_hit<render::OnlyInstance>(view, ray);
+      wrong += found.instance != expected.instance || found.triangle != expected.triangle || found.t != expected.t;
+      wrong += render::any_hit<render::OnlyInstance>(view, ray, {}) != (expected.instance != render::kNone);
+      hits += expected.instance != render::kNone;
+    }
+  }
+  CHECK(wrong == 0);
+  CHECK(hits > 100);
+}
+
 TEST_CASE("instances: the same a million sizes away") {
   const World world(random_parts(60, 4, 2), 1e6);
   int hits = 0;

@@ -1,7 +1,7 @@
 // Loading: what a scene does not need is not opened, read or placed; what cannot be placed says where.
 #include <doctest/doctest.h>
 
-#include "render/stages/shadow.h"
+#include "render/stages/colour.h"
 #include "worlds.h"
 
 using namespace kd;
@@ -47,12 +47,12 @@ TEST_CASE("load: black lights are left out") {
   CHECK(r.scene.skipped.black_lights == 2);
   CHECK(r.scene.skipped.shadow_launches == 2);
   for (const render::StageTime& stage : r.frame.stats.stages) {
-    if (stage.stage == render::Shadow::kName) CHECK(stage.launches == 1);
+    if (stage.stage == render::kLightingName) CHECK(stage.launches == 1);
   }
   s.lights = {light({0, 0, 0})};
   const Rendered dark(s, {});
   CHECK(dark.frame.stats.shadow_rays == 0);
-  for (const render::StageTime& stage : dark.frame.stats.stages) CHECK(stage.stage != render::Shadow::kName);
+  for (const render::StageTime& stage : dark.frame.stats.stages) CHECK(stage.stage != render::kLightingName);
 }
 
 TEST_CASE("load: sections are read when some stage reads them, and only then") {

@@ -38,17 +38,36 @@ __device__ uint32_t tiled_pixel(uint32_t thread, uint32_t width, uint32_t height
   return x < width && y < height ? y * width + x : kNone;
 }
 
-template <class Stage>
-__global__ void __launch_bounds__(kBlock) stage_kernel(Stage stage, unsigned long long* total) {
-  const uint32_t pixel = tiled_pixel(blockIdx.x * blockDim.x + threadIdx.x, stage.frame.width, stage.frame.height);
-  const uint32_t count = pixel != kNone ? stage(pixel) : 0;
-  const int in_block = __syncthreads_count(static_cast<int>(count));
-  if (threadIdx.x == 0 && in_block > 0) atomicAdd(total, static_cast<unsigned long long>(in_block));
-}
-
-/// Blocks a multiprocessor is to hold of the tracing kernel: on an H100 64 registers a thread and 8 blocks are 2 %
-/// faster than 56 and 9 for primary and shadow rays and as fast for bounce rays; 48 and 10 are slower.
+/// Blocks a multiprocessor is to hold of a kernel that traces one object: on an H100 64 registers a thread and 8 blocks
+/// are 2 % faster than 56 and 9 for primary and shadow rays and as fast for bounce rays; 48 and 10 are slower.
 constexpr unsigned kTraceBlocks = 8;
+
+/// What a stage's return values are added up in, where they tell something.
+enum Counter : size_t { kHits, kShadowRays, kCounters };
+template <class Stage>
+constexpr Counter kCounter = kCounters;  // in none
+template <class Instances>
+constexpr Counter kCounter<ObjectIntersection<Instances>> = kHits;
+template <class Instances>
+constexpr Counter kCounter<Lighting<Instances>> = kShadowRays;
+
+/// The same for a stage; those that trace through a hierarchy take what they need.
+template <class Stage>
+constexpr unsigned kStageBlocks = 1;
+template <>
+constexpr unsigned kStageBlocks<ObjectIntersection<OnlyInstance>> = kTraceBlocks;
+template <>
+constexpr unsigned kStageBlocks<Lighting<OnlyInstance>> = kTraceBlocks;
+
+template <class Stage>
+__global__ void __launch_bounds__(kBlock, kStageBlocks<Stage>) stage_kernel(Stage stage, unsigned long long* total) {
+  const uint32_t pixel = tiled_pixel(blockIdx.x * blockDim.x + threadIdx.x, stage.frame.width, stage.frame.height);
+  const bool counted = pixel != kNone && stage(pixel) != 0;
+  if constexpr (kCounter<Stage> != kCounters) {
+    const unsigned lanes = __ballot_sync(~0u, counted);
+    if (threadIdx.x % 32 == 0 && lanes != 0) atomicAdd(total, static_cast<unsigned long long>(__popc(lanes)));
+  }
+}
 
 template <RayMode mode, class Test>
 __global__ void __launch_bounds__(kBlock, kTraceBlocks)
@@ -153,8 +172,6 @@ class DeviceScene {
   uint64_t object_bytes() const { return object_bytes_; }
   uint64_t frame_bytes() const { return frame_bytes_; }
 
-  static constexpr size_t kCounters = 3;  // rays generated, hits, shadow rays
-
  private:
   void lay_out();
   Result<void> fill(cudaStream_t stream);
@@ -215,13 +232,11 @@ void DeviceScene::lay_out() {
   frame_.width = scene_.film.width;
   frame_.height = scene_.film.height;
   frame_.inverse_gamma = 1 / settings_.gamma;
-  frame_.directions = memory_.piece<Vec3d>(pixels);
   frame_.hits = memory_.piece<SurfaceHit>(pixels);
-  frame_.visibility = memory_.piece<uint8_t>(scene_.lights.empty() ? 0 : pixels);
-  frame_.colour = memory_.piece<float>(4 * pixels);
+  frame_.colour = memory_.piece<Pixel>(pixels);
   frame_.preview = memory_.piece<uint8_t>(settings_.preview ? 3 * pixels : 0);
-  frame_bytes_ = pixels * (sizeof(Vec3d) + sizeof(SurfaceHit) + 4 * sizeof(float) + (scene_.lights.empty() ? 0 : 1) +
-                           (settings_.preview ? 3 : 0));
+  frame_bytes_ =
+      pixels * (sizeof(SurfaceHit) + sizeof(Pixel) + (scene_.lights.empty() ? 0 : 1) + (settings_.preview ? 3 : 0));
   targets_.clear();
   for (image::Aov aov : settings_.aovs) {
     const size_t words = static_cast<size_t>(image::aov_row(aov).components) * pixels;
@@ -260,14 +275,6 @@ Result<void> DeviceScene::fill(cudaStream_t stream) {
   KD_CUDA_TRY(cudaMemsetAsync(totals_, 0, kCounters * sizeof(*totals_), stream), action);
   KD_CUDA_TRY(cudaStreamSynchronize(stream), action);
   return {};
-}
-
-/// Which counter a stage adds to. Stages that count nothing return 0 throughout, so any will do.
-template <class Stage>
-constexpr size_t counter_of() {
-  if constexpr (std::is_same_v<Stage, ObjectIntersection>) return 1;
-  if constexpr (std::is_same_v<Stage, Shadow>) return 2;
-  return 0;
 }
 
 struct Launch {
@@ -316,22 +323,22 @@ Result<Frame> cuda_render(const LoadedScene& scene, const RenderSettings& settin
   const FrameView frame = device.frame();
   const size_t tiles = size_t{(frame.width + 7) / 8} * ((frame.height + 3) / 4);
   std::vector<std::unique_ptr<Launch>> launches;
-  const PipelinePlan plan{static_cast<uint32_t>(scene.lights.size()), device.targets(), settings.preview,
-                          settings.gamma_on_film};
+  const PipelinePlan plan{static_cast<uint32_t>(scene.lights.size()), scene.instances.size() == 1, device.targets(),
+                          settings.preview, settings.gamma_on_film};
   cudaError_t launched = cudaSuccess;
   const auto launch = [&](const auto& stage) {
     using Stage = std::decay_t<decltype(stage)>;
     Launch& record = *launches.emplace_back(std::make_unique<Launch>());
     record.stage = Stage::kName;
     record.start.record(stream);
-    stage_kernel<<<blocks_for(tiles * 32), kBlock, 0, stream>>>(stage, device.totals() + counter_of<Stage>());
+    stage_kernel<<<blocks_for(tiles * 32), kBlock, 0, stream>>>(stage, device.totals() + kCounter<Stage>);
     if (launched == cudaSuccess) launched = cudaGetLastError();
     record.end.record(stream);
   };
   const auto launch_and_count = [&](const auto& stage) -> uint64_t {
     launch(stage);
     unsigned long long count = 0;
-    const unsigned long long* total = device.totals() + counter_of<std::decay_t<decltype(stage)>>();
+    const unsigned long long* total = device.totals() + kCounter<std::decay_t<decltype(stage)>>;
     const cudaError_t copied = cudaMemcpyAsync(&count, total, sizeof(count), cudaMemcpyDeviceToHost, stream);
     const cudaError_t waited = copied == cudaSuccess ? cudaStreamSynchronize(stream) : copied;
     if (launched == cudaSuccess) launched = waited;
@@ -350,7 +357,7 @@ Result<Frame> cuda_render(const LoadedScene& scene, const RenderSettings& settin
   const char* action = "copying the film back";
   out.film.width = frame.width;
   out.film.height = frame.height;
-  KD_CUDA_TRY(download(out.film.colour, frame.colour, 4 * pixels, stream), action);
+  KD_CUDA_TRY(download(out.film.colour, &frame.colour->colour.x, 4 * pixels, stream), action);
   KD_CUDA_TRY(download(out.preview, frame.preview, settings.preview ? 3 * pixels : 0, stream), action);
   for (const AovTarget& target : device.targets()) {
     image::AovBuffer& buffer = out.film.aovs.emplace_back();
@@ -359,11 +366,11 @@ Result<Frame> cuda_render(const LoadedScene& scene, const RenderSettings& settin
     KD_CUDA_TRY(download(buffer.words, target.words, words, stream), action);
   }
   std::vector<unsigned long long> totals;
-  KD_CUDA_TRY(download(totals, device.totals(), DeviceScene::kCounters, stream), action);
+  KD_CUDA_TRY(download(totals, device.totals(), kCounters, stream), action);
   KD_CUDA_TRY(cudaStreamSynchronize(stream), action);
-  out.stats.primary_rays = totals[0];
-  out.stats.primary_hits = totals[1];
-  out.stats.shadow_rays = totals[2];
+  out.stats.primary_rays = pixels;
+  out.stats.primary_hits = totals[kHits];
+  out.stats.shadow_rays = totals[kShadowRays];
   out.stats.download_seconds = timer.lap();
   return out;
 }

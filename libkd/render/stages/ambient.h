@@ -6,19 +6,18 @@
 
 namespace kd::render {
 
+KD_HD KD_INLINE Pixel ambient_of(const SceneView& scene, const SurfaceHit& hit) {
+  if (hit.instance == kNone) return {scene.background, 0};
+  return {scene.ambient * material_at(scene, hit).ambient, 1};
+}
+
+/// The stage where no light follows; else the first light's colour stage begins with it.
 struct Ambient {
   static constexpr const char* kName = "ambient";
   FrameView frame;
 
   KD_HD uint32_t operator()(uint32_t pixel) const {
-    const SurfaceHit& hit = frame.hits[pixel];
-    const bool met = hit.instance != kNone;
-    const Vec3f c = met ? frame.scene.ambient * material_at(frame.scene, hit).ambient : frame.scene.background;
-    float* out = frame.colour + 4 * static_cast<uint64_t>(pixel);
-    out[0] = c.x;
-    out[1] = c.y;
-    out[2] = c.z;
-    out[3] = met ? 1.0f : 0.0f;
+    frame.colour[pixel] = ambient_of(frame.scene, frame.hits[pixel]);
     return 0;
   }
 };

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "image/channels.h"
+#include "render/stages/ray_generation.h"
 #include "render/stages/surface.h"
 #include "render/view.h"
 
@@ -31,10 +32,10 @@ struct WriteAov {
         scalar(bits(met ? hit.t : std::numeric_limits<double>::infinity()));
         break;
       case image::Aov::normal:
-        vector(met ? surface_at(frame.scene, hit, frame.directions[pixel]).shading : Vec3d{0, 0, 0});
+        vector(met ? surface_at(frame.scene, hit, primary_direction(frame, pixel)).shading : Vec3d{0, 0, 0});
         break;
       case image::Aov::position:
-        vector(met ? surface_at(frame.scene, hit, frame.directions[pixel]).position : Vec3d{0, 0, 0});
+        vector(met ? surface_at(frame.scene, hit, primary_direction(frame, pixel)).position : Vec3d{0, 0, 0});
         break;
       case image::Aov::object:
         scalar(met ? frame.scene.instances[hit.instance].object : kNone);

@@ -3,38 +3,59 @@
 #pragma once
 
 #include "core/power.h"
+#include "render/stages/ambient.h"
+#include "render/stages/ray_generation.h"
+#include "render/stages/shadow.h"
 #include "render/stages/surface.h"
 #include "render/view.h"
 
 namespace kd::render {
 
-struct Colour {
-  static constexpr const char* kName = "colour";
+/// What a surface that faces the light sends of it against `direction`.
+KD_HD inline Vec3f reflected(const LightView& light, const Surface& surface, const Material& material,
+                             Vec3d to_light_direction, Vec3d direction) {
+  const double cosine = dot(surface.shading, to_light_direction);
+  const Vec3d mirrored = surface.shading * (2 * cosine) - to_light_direction;
+  const double toward_viewer = max_of(-dot(mirrored, direction), 0.0);
+  const auto diffuse = static_cast<float>(cosine);
+  const bool glossy = material.specular.x > 0 || material.specular.y > 0 || material.specular.z > 0;
+  const float specular = glossy ? static_cast<float>(exact_pow(toward_viewer, material.shininess)) : 0.0f;
+  return light.colour * (material.diffuse * diffuse + material.specular * specular);
+}
+
+constexpr const char* kLightingName = "shadow, colour";
+
+/// Shadow and colour of one light in one launch: apart, each would read the hits and find the surface again. The first
+/// light begins with the ambient colour. Returns how many shadow rays were cast.
+template <class Instances>
+struct Lighting {
+  static constexpr const char* kName = kLightingName;
   FrameView frame;
   uint32_t light = 0;
 
   KD_HD uint32_t operator()(uint32_t pixel) const {
-    if (frame.visibility[pixel] != kLit) return 0;
-    const SurfaceHit& hit = frame.hits[pixel];
-    const Vec3d direction = frame.directions[pixel];
-    const LightView& source = frame.scene.lights[light];
-    const Surface surface = surface_at(frame.scene, hit, direction);
-    const Material material = material_at(frame.scene, hit);
-
-    const Vec3d to_source = to_light(source, surface.shadow_origin, 0).direction;
-    const double cosine = dot(surface.shading, to_source);
-    const Vec3d mirrored = surface.shading * (2 * cosine) - to_source;
-    const double toward_viewer = max_of(-dot(mirrored, direction), 0.0);
-    const auto diffuse = static_cast<float>(cosine);
-    const bool glossy = material.specular.x > 0 || material.specular.y > 0 || material.specular.z > 0;
-    const float specular = glossy ? static_cast<float>(exact_pow(toward_viewer, material.shininess)) : 0.0f;
-
-    const Vec3f added = source.colour * (material.diffuse * diffuse + material.specular * specular);
-    float* out = frame.colour + 4 * static_cast<uint64_t>(pixel);
-    out[0] += added.x;
-    out[1] += added.y;
-    out[2] += added.z;
-    return 0;
+    const SurfaceHit hit = frame.hits[pixel];
+    const bool first = light == 0;
+    bool asked = false, lit = false;
+    Vec3f added{0, 0, 0};
+    if (hit.instance != kNone) {
+      const LightView& source = frame.scene.lights[light];
+      const Vec3d direction = primary_direction(frame, pixel);
+      const Surface surface = surface_at(frame.scene, hit, direction);
+      const ToLight way = to_light(source, surface.shadow_origin, kFar);
+      asked = faces(surface, way);
+      if (asked) {
+        // Before the ray is traced, so that nothing else of the surface is kept meanwhile.
+        added = reflected(source, surface, material_at(frame.scene, hit), way.direction, direction);
+        lit = is_lit<Instances>(frame.scene, hit, surface.shadow_origin, way);
+      }
+    }
+    if (first || lit) {
+      Pixel out = first ? ambient_of(frame.scene, hit) : frame.colour[pixel];
+      if (lit) out.colour = out.colour + added;
+      frame.colour[pixel] = out;
+    }
+    return asked;
   }
 };
 

@@ -12,10 +12,11 @@ struct GammaPreview {
   FrameView frame;
 
   KD_HD uint32_t operator()(uint32_t pixel) const {
-    for (uint64_t channel = 0; channel < 3; ++channel) {
-      const double c = frame.colour[4 * static_cast<uint64_t>(pixel) + channel];
-      const double shown = exact_pow(min_of(max_of(c, 0.0), 1.0), frame.inverse_gamma);
-      frame.preview[3 * static_cast<uint64_t>(pixel) + channel] = static_cast<uint8_t>(std::floor(shown * 255 + 0.5));
+    const Vec3f c = frame.colour[pixel].colour;
+    uint8_t* out = frame.preview + 3 * static_cast<uint64_t>(pixel);
+    for (int channel = 0; channel < 3; ++channel) {
+      const double clamped = min_of(max_of(static_cast<double>(c[channel]), 0.0), 1.0);
+      out[channel] = static_cast<uint8_t>(std::floor(exact_pow(clamped, frame.inverse_gamma) * 255 + 0.5));
     }
     return 0;
   }
@@ -27,10 +28,12 @@ struct GammaFilm {
   FrameView frame;
 
   KD_HD uint32_t operator()(uint32_t pixel) const {
-    for (uint64_t channel = 0; channel < 3; ++channel) {
-      float& c = frame.colour[4 * static_cast<uint64_t>(pixel) + channel];
-      c = static_cast<float>(exact_pow(max_of(static_cast<double>(c), 0.0), frame.inverse_gamma));
-    }
+    Pixel out = frame.colour[pixel];
+    const auto shown = [&](float c) {
+      return static_cast<float>(exact_pow(max_of(static_cast<double>(c), 0.0), frame.inverse_gamma));
+    };
+    out.colour = {shown(out.colour.x), shown(out.colour.y), shown(out.colour.z)};
+    frame.colour[pixel] = out;
     return 0;
   }
 };

@@ -14,58 +14,71 @@ struct Excluded {
   uint32_t triangle = kNone;
 };
 
-namespace detail {
-
-/// Takes the ray into the instance's lattice. `s_limit`: the distance there of `t_limit`, rounded up.
-KD_HD KD_INLINE bool enter_instance(const SceneView& scene, uint32_t index, const Ray& ray, double t_limit,
-                                    LatticeRay& lattice_ray, float& s_limit) {
-  const InstanceView& instance = scene.instances[index];
-  const Vec3d origin = instance.to_lattice.apply_point(ray.origin);
-  const Vec3d direction = instance.to_lattice.apply_vector(ray.direction);
-  if (!snap_ray(origin, direction, ray.t_min, ray.t_max, scene.objects[instance.object].tree.bits, lattice_ray))
-    return false;
-  const double s = (t_limit - lattice_ray.t_base) / lattice_ray.t_scale;
-  s_limit = static_cast<float>(min_of(s, 1e30)) * (1 + 0x1p-20f);
-  return s >= 0;
-}
-
+/// How a ray finds the instances that it may meet: these two have the same interface.
+///
 /// Calls visit(instance) for instances whose boxes the ray passes, nearer boxes first, while visit returns true. Boxes
 /// that begin beyond `t_limit`, which visit may lower, are left out.
-template <class Visit>
-KD_HD void for_each_instance(const SceneView& scene, const Ray& ray, const double& t_limit, const Visit& visit) {
-  if (scene.instance_count == 0) return;
-  const Vec3d inverse = inverse_direction(ray.direction);
-  uint32_t stack[kMaxHierarchyDepth + 1];
-  int open = 0;
-  if (const Passage p = pass_box(scene.hierarchy[0], ray.origin, inverse, ray.t_min, t_limit); p.enter > p.leave)
-    return;
-  stack[open++] = 0;
-  while (open > 0) {
-    const HierarchyNode& node = scene.hierarchy[stack[--open]];
-    if (node.is_leaf) {
-      if (!visit(node.first)) return;
-      continue;
+struct ThroughHierarchy {
+  template <class Visit>
+  KD_HD static void for_each(const SceneView& scene, const Ray& ray, const double& t_limit, const Visit& visit) {
+    if (scene.instance_count == 0) return;
+    const Vec3d inverse = inverse_direction(ray.direction);
+    uint32_t stack[kMaxHierarchyDepth + 1];
+    int open = 0;
+    if (const Passage p = pass_box(scene.hierarchy[0], ray.origin, inverse, ray.t_min, t_limit); p.enter > p.leave)
+      return;
+    stack[open++] = 0;
+    while (open > 0) {
+      const HierarchyNode& node = scene.hierarchy[stack[--open]];
+      if (node.is_leaf) {
+        if (!visit(node.first)) return;
+        continue;
+      }
+      const Passage a = pass_box(scene.hierarchy[node.first], ray.origin, inverse, ray.t_min, t_limit);
+      const Passage b = pass_box(scene.hierarchy[node.first + 1], ray.origin, inverse, ray.t_min, t_limit);
+      const bool a_first = a.enter <= b.enter;
+      const Passage near = a_first ? a : b, far = a_first ? b : a;
+      const uint32_t near_child = node.first + (a_first ? 0u : 1u), far_child = node.first + (a_first ? 1u : 0u);
+      if (far.enter <= far.leave) stack[open++] = far_child;
+      if (near.enter <= near.leave) stack[open++] = near_child;
     }
-    const Passage a = pass_box(scene.hierarchy[node.first], ray.origin, inverse, ray.t_min, t_limit);
-    const Passage b = pass_box(scene.hierarchy[node.first + 1], ray.origin, inverse, ray.t_min, t_limit);
-    const bool a_first = a.enter <= b.enter;
-    const Passage near = a_first ? a : b, far = a_first ? b : a;
-    const uint32_t near_child = node.first + (a_first ? 0u : 1u), far_child = node.first + (a_first ? 1u : 0u);
-    if (far.enter <= far.leave) stack[open++] = far_child;
-    if (near.enter <= near.leave) stack[open++] = near_child;
   }
+};
+
+/// For scenes of one instance, which need no hierarchy; nor, on a GPU, the registers for one.
+struct OnlyInstance {
+  template <class Visit>
+  KD_HD KD_INLINE static void for_each(const SceneView&, const Ray&, const double&, const Visit& visit) {
+    visit(0);
+  }
+};
+
+namespace detail {
+
+/// Takes the ray into the instance's lattice; false if it does not pass the object's box.
+KD_HD KD_INLINE bool enter_instance(const SceneView& scene, uint32_t index, const Ray& ray, LatticeRay& lattice_ray) {
+  const InstanceView& instance = scene.instances[index];
+  return snap_ray(instance.to_lattice.apply_point(ray.origin), instance.to_lattice.apply_vector(ray.direction),
+                  ray.t_min, ray.t_max, scene.objects[instance.object].tree.bits, lattice_ray);
+}
+
+/// The distance in the lattice of `t_limit`, rounded up.
+KD_HD KD_INLINE float limit_in_lattice(const LatticeRay& ray, double t_limit) {
+  return static_cast<float>(min_of((t_limit - ray.t_base) / ray.t_scale, 1e30)) * (1 + 0x1p-20f);
 }
 
 }  // namespace detail
 
 /// The nearest hit of a ray in the scene.
+template <class Instances = ThroughHierarchy>
 KD_HD inline SurfaceHit closest_hit(const SceneView& scene, const Ray& ray) {
   SurfaceHit best;
   double t_limit = ray.t_max;
-  detail::for_each_instance(scene, ray, t_limit, [&](uint32_t index) {
+  Instances::for_each(scene, ray, t_limit, [&](uint32_t index) {
     LatticeRay lattice_ray;
-    float s_limit;
-    if (!detail::enter_instance(scene, index, ray, t_limit, lattice_ray, s_limit)) return true;
+    if (!detail::enter_instance(scene, index, ray, lattice_ray)) return true;
+    const float s_limit = best.instance == kNone ? lattice_ray.s_max : detail::limit_in_lattice(lattice_ray, t_limit);
+    if (s_limit < 0) return true;
     const ObjectView& object = scene.objects[scene.instances[index].object].tree;
     NoCounter counter;
     const uint32_t triangle = traverse<RayMode::closest>(object, lattice_ray, s_limit, kNoTriangle, counter);
@@ -79,27 +92,31 @@ KD_HD inline SurfaceHit closest_hit(const SceneView& scene, const Ray& ray) {
 }
 
 /// Whether the ray meets anything but `excluded`.
+template <class Instances = ThroughHierarchy>
 KD_HD inline bool any_hit(const SceneView& scene, const Ray& ray, Excluded excluded) {
   bool met = false;
-  detail::for_each_instance(scene, ray, ray.t_max, [&](uint32_t index) {
+  Instances::for_each(scene, ray, ray.t_max, [&](uint32_t index) {
     LatticeRay lattice_ray;
-    float s_limit;
-    if (!detail::enter_instance(scene, index, ray, ray.t_max, lattice_ray, s_limit)) return true;
+    if (!detail::enter_instance(scene, index, ray, lattice_ray)) return true;
     const ObjectView& object = scene.objects[scene.instances[index].object].tree;
     const uint32_t own = excluded.instance == index ? excluded.triangle : kNoTriangle;
     NoCounter counter;
-    met = traverse<RayMode::any>(object, lattice_ray, s_limit, own, counter) != kNoTriangle;
+    met = traverse<RayMode::any>(object, lattice_ray, lattice_ray.s_max, own, counter) != kNoTriangle;
     return !met;
   });
   return met;
 }
 
+constexpr const char* kIntersectionName = "object intersection";
+
+/// Returns whether the pixel's ray hit something.
+template <class Instances>
 struct ObjectIntersection {
-  static constexpr const char* kName = "object intersection";
+  static constexpr const char* kName = kIntersectionName;
   FrameView frame;
 
   KD_HD uint32_t operator()(uint32_t pixel) const {
-    const SurfaceHit hit = closest_hit(frame.scene, primary_ray(frame, pixel));
+    const SurfaceHit hit = closest_hit<Instances>(frame.scene, primary_ray(frame, pixel));
     frame.hits[pixel] = hit;
     return hit.instance != kNone;
   }

@@ -1,5 +1,4 @@
-// Shadow: whether one light reaches a pixel's surface. A light behind the surface is not asked; a ray ends at the first
-// occluder. Returns how many rays were cast.
+// Shadow: whether a light reaches a surface. A light behind the surface is not asked; a ray ends at the first occluder.
 #pragma once
 
 #include "render/stages/object_intersection.h"
@@ -8,23 +7,14 @@
 
 namespace kd::render {
 
-struct Shadow {
-  static constexpr const char* kName = "shadow";
-  FrameView frame;
-  uint32_t light = 0;
+KD_HD KD_INLINE bool faces(const Surface& surface, const ToLight& way) {
+  return dot(surface.geometric, way.direction) > 0 && dot(surface.shading, way.direction) > 0;
+}
 
-  KD_HD uint32_t operator()(uint32_t pixel) const {
-    const SurfaceHit& hit = frame.hits[pixel];
-    frame.visibility[pixel] = kNotAsked;
-    if (hit.instance == kNone) return 0;
-    const Vec3d direction = frame.directions[pixel];
-    const Surface surface = surface_at(frame.scene, hit, direction);
-    const ToLight way = to_light(frame.scene.lights[light], surface.shadow_origin, kFar);
-    if (!(dot(surface.geometric, way.direction) > 0) || !(dot(surface.shading, way.direction) > 0)) return 0;
-    const Ray ray{surface.shadow_origin, way.direction, 0, way.distance};
-    frame.visibility[pixel] = any_hit(frame.scene, ray, {hit.instance, hit.triangle}) ? kOccluded : kLit;
-    return 1;
-  }
-};
+/// For a surface that faces the light.
+template <class Instances>
+KD_HD KD_INLINE bool is_lit(const SceneView& scene, const SurfaceHit& hit, Vec3d shadow_origin, const ToLight& way) {
+  return !any_hit<Instances>(scene, {shadow_origin, way.direction, 0, way.distance}, {hit.instance, hit.triangle});
+}
 
 }  // namespace kd::render

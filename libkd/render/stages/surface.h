@@ -50,7 +50,7 @@ KD_HD inline Surface surface_at(const SceneView& scene, const SurfaceHit& hit, V
   s.geometric = normalised(instance.to_lattice.normal_to_outer(n_lattice));
   const bool flipped = dot(s.geometric, direction) > 0;
   if (flipped) s.geometric = -s.geometric;
-  const double grid = 1.0 / static_cast<double>(1u << (kMaxLatticeBits - object.tree.bits));
+  const double grid = power_of_two(object.tree.bits - kMaxLatticeBits);
   s.shadow_origin =
       instance.to_scene.apply_point(p_lattice + n_lattice * (flipped ? -kShadowLift * grid : kShadowLift * grid));
 
@@ -77,8 +77,8 @@ struct ToLight {
 
 KD_HD KD_INLINE ToLight to_light(const LightView& light, Vec3d from, double far_away) {
   if (!light.is_point) return {light.vector, far_away};
-  const Vec3d way = light.vector - from;
-  return {normalised(way), length(way)};
+  const Polar way = polar(light.vector - from);
+  return {way.direction, way.length};
 }
 
 }  // namespace kd::render
