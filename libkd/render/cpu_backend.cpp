@@ -115,6 +115,10 @@ Result<Frame> cpu_render(const LoadedScene& scene, const RenderSettings& setting
     add_stage_count(out.stats, stage.kName, count);
     return count;
   };
+  for (int warm_ups = settings.warm_ups; warm_ups > 0; --warm_ups) run_pipeline(frame, plan, launch, launch);
+  out.stats.stages.clear();
+  out.stats.primary_hits = out.stats.shadow_rays = 0;
+  whole.lap();
   run_pipeline(frame, plan, launch, launch);
   if (progress.cancelled()) return Error{ErrorClass::interrupted, "", "interrupted"};
   out.stats.render_seconds = whole.seconds();

@@ -22,6 +22,7 @@ struct RenderSettings {
   double gamma = 2.2;  // > 0; of the preview, and of the film if gamma_on_film
   bool gamma_on_film = false;
   Progress progress = {};  // may cancel the render: ErrorClass::interrupted
+  int warm_ups = 0;        // frames rendered before the one that is kept and timed
 };
 
 /// One object's sections that this render reads; the others are empty and stay on disk.

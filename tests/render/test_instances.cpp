@@ -115,7 +115,8 @@ TEST_CASE("instances: the only one, with a hierarchy and without") {
     const World world(random_parts(1, 30 + static_cast<uint64_t>(i), 3));
     const render::SceneView view = world.view();
     for (int k = 0; k < 500; ++k) {
-      const Ray ray{random.vector(14), random.vector(1), 0, random.chance(0.2) ? random.real(0, 30) : 1e300};
+      const Vec3d origin = random.vector(14), target = random.vector(10);
+      const Ray ray{origin, target - origin, 0, random.chance(0.2) ? random.real(0, 2) : 1e300};
       const render::SurfaceHit expected = render::closest_hit<render::ThroughHierarchy>(view, ray);
       const render::SurfaceHit found = render::closest_hit<render::OnlyInstance>(view, ray);
       wrong += found.instance != expected.instance || found.triangle != expected.triangle || found.t != expected.t;

@@ -169,6 +169,9 @@ class DeviceScene {
   FrameView frame() const { return frame_; }
   std::span<const AovTarget> targets() const { return targets_; }
   unsigned long long* totals() const { return totals_; }
+  cudaError_t clear_totals(cudaStream_t stream) const {
+    return cudaMemsetAsync(totals_, 0, kCounters * sizeof(*totals_), stream);
+  }
   uint64_t object_bytes() const { return object_bytes_; }
   uint64_t frame_bytes() const { return frame_bytes_; }
 
@@ -272,7 +275,6 @@ Result<void> DeviceScene::fill(cudaStream_t stream) {
   KD_CUDA_TRY(upload(hierarchy_, std::span<const HierarchyNode>(scene_.hierarchy), stream), action);
   KD_CUDA_TRY(upload(overrides_, std::span<const Material>(scene_.overrides), stream), action);
   KD_CUDA_TRY(upload(lights_, std::span<const LightView>(scene_.lights), stream), action);
-  KD_CUDA_TRY(cudaMemsetAsync(totals_, 0, kCounters * sizeof(*totals_), stream), action);
   KD_CUDA_TRY(cudaStreamSynchronize(stream), action);
   return {};
 }
@@ -344,9 +346,13 @@ Result<Frame> cuda_render(const LoadedScene& scene, const RenderSettings& settin
     if (launched == cudaSuccess) launched = waited;
     return count;
   };
-  run_pipeline(frame, plan, launch, launch_and_count);
-  KD_CUDA_TRY(launched, "launching a stage");
-  KD_CUDA_TRY(cudaStreamSynchronize(stream), "rendering");
+  for (int warm_ups = settings.warm_ups; warm_ups >= 0; --warm_ups) {
+    launches.clear();
+    KD_CUDA_TRY(device.clear_totals(stream), "starting");
+    run_pipeline(frame, plan, launch, launch_and_count);
+    KD_CUDA_TRY(launched, "launching a stage");
+    KD_CUDA_TRY(cudaStreamSynchronize(stream), "rendering");
+  }
   if (!keep_going(settings.progress, 1)) return Error{ErrorClass::interrupted, "", "interrupted"};
   for (const auto& launch : launches)
     add_stage_time(out.stats, launch->stage, launch->end.seconds_since(launch->start));
