@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include <fmt/format.h>
@@ -19,6 +20,18 @@ bool misaligned(const flatbuffers::Vector<Stored>* v) {
   return v && reinterpret_cast<uintptr_t>(v->Data()) % 16 != 0;
 }
 
+/// Of a file whose tables may be those of another version, and unverified: only what leads to the number is looked at.
+std::optional<uint32_t> version_of(const uint8_t* data, size_t size) {
+  flatbuffers::Verifier verifier(data, size);
+  const auto root = verifier.VerifyOffset(0);
+  if (root == 0) return std::nullopt;
+  const auto* table = reinterpret_cast<const flatbuffers::Table*>(data + root);
+  constexpr auto kField = nkd_schema::Object::VT_VERSION;
+  if (!table->VerifyTableStart(verifier) || !table->VerifyField<uint32_t>(verifier, kField, sizeof(uint32_t)))
+    return std::nullopt;
+  return table->GetField<uint32_t>(kField, 0);
+}
+
 }  // namespace
 
 Check check_container(std::span<const std::byte> bytes) {
@@ -26,12 +39,13 @@ Check check_container(std::span<const std::byte> bytes) {
   constexpr size_t kHeader = 16;
   if (bytes.size() < kHeader || !nkd_schema::ObjectBufferHasIdentifier(data)) return found(Issue::not_nkd);
   if (bytes.size() >= FLATBUFFERS_MAX_BUFFER_SIZE) return found(Issue::offsets, "2 GiB or more, which no .nkd has");
+  // First, because the verifier knows the tables of this version only.
+  if (const auto version = version_of(data, bytes.size()); version && *version != kFormatVersion) {
+    return found(Issue::version, fmt::format("version {}, this program reads {}", *version, kFormatVersion));
+  }
   flatbuffers::Verifier verifier(data, bytes.size(), 8, 16, true);
   if (!nkd_schema::VerifyObjectBuffer(verifier)) return found(Issue::offsets);
   const nkd_schema::Object& o = *nkd_schema::GetObject(data);
-  if (o.version() != kFormatVersion) {
-    return found(Issue::version, fmt::format("version {}, this program reads {}", o.version(), kFormatVersion));
-  }
   const auto absent = [](const auto* member) { return member == nullptr; };
   if (absent(o.origin()) || absent(o.extent()) || absent(o.checksums()) || absent(o.tree()) || absent(o.provenance()) ||
       absent(o.nodes()) || absent(o.references()) || absent(o.triangles()) || absent(o.vertices()) ||

@@ -117,6 +117,12 @@ const std::vector<BadFile>& bad_files() {
       {Issue::not_nkd, {}, [](std::string& b) { b.clear(); }},
       {Issue::not_nkd, {}, [](std::string& b) { b.resize(15); }},
       {Issue::version, {}, [](std::string& b) { set_field<uint32_t>(b, nkd_schema::Object::VT_VERSION, 1); }},
+      {Issue::version,
+       {},
+       [](std::string& b) {  // whose sections are elsewhere
+         set_field<uint32_t>(b, nkd_schema::Object::VT_VERSION, 1);
+         set_field<uint32_t>(b, nkd_schema::Object::VT_NODES, 0x7ffffff0);
+       }},
       {Issue::offsets, {}, [](std::string& b) { patch_u32(b, 0, 0x7ffffff0); }},
       {Issue::offsets, {}, [](std::string& b) { b.resize(b.size() / 2); }},
       {Issue::missing_section, {}, [](std::string& b) { drop_field(b, nkd_schema::Object::VT_ORIGIN); }},
