@@ -53,7 +53,7 @@ KD_HD KD_INLINE float reciprocal(float x) {
 #endif
 }
 
-/// 1 / x to 2^-52 of itself, for |x| in [2^-100, 2^100]: from the float32 below it by a step of third order.
+/// 1 / x to 2^-52 of itself, for |x| in [2^-100, 2^100]: from that of the nearest float32, by one step of third order.
 KD_HD KD_INLINE double reciprocal(double x) {
   const double first = reciprocal(static_cast<float>(x)), error = std::fma(-x, first, 1.0);
   return std::fma(first, std::fma(error, error, error), first);
