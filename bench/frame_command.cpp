@@ -1,6 +1,6 @@
 // kdbench frame: where the time of a frame goes, stage by stage; the first one after an upload, and later ones.
-#include <algorithm>
 #include <memory>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -26,9 +26,9 @@ struct Options {
   bool gamma = false;
 };
 
-/// The same frame some times, each after its own upload.
 using Frames = std::vector<render::RenderStats>;
 
+/// The same frame some times, each after its own upload.
 Result<Frames> render_frames(const Options& o, const render::Device& device, const render::LoadedScene& scene,
                              render::RenderSettings settings, int warm_ups) {
   settings.warm_ups = warm_ups;

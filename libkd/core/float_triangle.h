@@ -22,8 +22,6 @@ struct FloatHit {
 
 namespace detail {
 
-KD_HD KD_INLINE float fused_dot(Vec3f a, Vec3f b) { return std::fma(a.x, b.x, std::fma(a.y, b.y, a.z * b.z)); }
-
 KD_HD KD_INLINE Vec3f fused_cross(Vec3f a, Vec3f b) {
   return {std::fma(a.y, b.z, -(a.z * b.y)), std::fma(a.z, b.x, -(a.x * b.z)), std::fma(a.x, b.y, -(a.y * b.x))};
 }

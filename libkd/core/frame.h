@@ -28,8 +28,7 @@ struct InverseFrame {
   Vec3d z_row{0, 0, 1};
 
   KD_HD KD_INLINE Vec3d apply_vector(Vec3d v) const {
-    const auto along = [&](Vec3d row) { return std::fma(row.x, v.x, std::fma(row.y, v.y, row.z * v.z)); };
-    return {along(x_row), along(y_row), along(z_row)};
+    return {fused_dot(x_row, v), fused_dot(y_row, v), fused_dot(z_row, v)};
   }
   KD_HD KD_INLINE Vec3d apply_point(Vec3d p) const { return apply_vector(p - point); }
   /// Takes a normal of the framed space back out: the inverse transpose of the frame's axes.

@@ -1,5 +1,6 @@
 #include "render/cpu_backend.h"
 
+#include <array>
 #include <atomic>
 
 #include <fmt/format.h>
@@ -102,27 +103,32 @@ Result<Frame> cpu_render(const LoadedScene& scene, const RenderSettings& setting
   frame.preview = out.preview.data();
   frame.inverse_gamma = 1 / settings.gamma;
 
-  const PipelinePlan plan{static_cast<uint32_t>(scene.lights.size()), instances.size() == 1, targets, settings.preview,
+  const PipelinePlan plan{static_cast<uint32_t>(scene.lights.size()), targets, settings.preview,
                           settings.gamma_on_film};
   SharedProgress progress(settings.progress);
   size_t launched = 0;
-  Timer whole;
+  std::array<uint64_t, kCounters + 1> totals{};  // the last: of stages that count nothing
   const auto launch = [&](const auto& stage) {
     Timer stage_timer;
     const double share = static_cast<double>(launched++) / static_cast<double>(plan.launches());
     const uint64_t count = for_each_pixel(stage, pixels, progress, share);
     add_stage_time(out.stats, stage.kName, stage_timer.seconds());
-    add_stage_count(out.stats, stage.kName, count);
+    totals[kCounter<std::decay_t<decltype(stage)>>] += count;
     return count;
   };
-  for (int warm_ups = settings.warm_ups; warm_ups > 0; --warm_ups) run_pipeline(frame, plan, launch, launch);
-  out.stats.stages.clear();
-  out.stats.primary_hits = out.stats.shadow_rays = 0;
-  whole.lap();
-  run_pipeline(frame, plan, launch, launch);
+  Timer whole;
+  for (int warm_ups = settings.warm_ups; warm_ups >= 0; --warm_ups) {
+    out.stats.stages.clear();
+    totals.fill(0);
+    launched = 0;
+    whole.lap();
+    run_pipeline(frame, plan, launch, launch);
+  }
   if (progress.cancelled()) return Error{ErrorClass::interrupted, "", "interrupted"};
   out.stats.render_seconds = whole.seconds();
   out.stats.primary_rays = pixels;
+  out.stats.primary_hits = totals[kHits];
+  out.stats.shadow_rays = totals[kShadowRays];
   return out;
 }
 

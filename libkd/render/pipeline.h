@@ -19,8 +19,7 @@ struct AovTarget {
 };
 
 struct PipelinePlan {
-  uint32_t light_count = 0;   // lights that are black are not in the scene view
-  bool one_instance = false;  // the scene is that and needs no hierarchy
+  uint32_t light_count = 0;  // lights that are black are not in the scene view
   std::span<const AovTarget> aovs;
   bool gamma_on_preview = false;
   bool gamma_on_film = false;
@@ -28,6 +27,15 @@ struct PipelinePlan {
   /// How many launches there are if some ray hits something.
   size_t launches() const { return 1 + max_of(light_count, 1u) + aovs.size() + gamma_on_preview + gamma_on_film; }
 };
+
+/// What a stage's return values are added up in, where they tell something.
+enum Counter : size_t { kHits, kShadowRays, kCounters };
+template <class Stage>
+constexpr Counter kCounter = kCounters;  // in none
+template <class Instances>
+constexpr Counter kCounter<ObjectIntersection<Instances>> = kHits;
+template <class Instances>
+constexpr Counter kCounter<Lighting<Instances>> = kShadowRays;
 
 /// Launches the stages that have work, in order. `launch(stage)` runs stage(pixel) for every pixel and may return
 /// before it is done; the next stage starts after it. `launch_and_count(stage)` waits, and returns the sum of what the
@@ -43,7 +51,7 @@ void run_pipeline(const FrameView& frame, const PipelinePlan& plan, Launch&& lau
       launch(Lighting<Instances>{frame, light});
     }
   };
-  if (plan.one_instance) {
+  if (frame.scene.instance_count == 1) {
     traced_stages(OnlyInstance{});
   } else {
     traced_stages(ThroughHierarchy{});

@@ -4,7 +4,6 @@
 #include <string_view>
 
 #include "render/backend.h"
-#include "render/pipeline.h"
 
 namespace kd::render {
 
@@ -16,12 +15,6 @@ inline void add_stage_time(RenderStats& stats, std::string_view stage, double se
     return;
   }
   stats.stages.push_back({std::string(stage), seconds, 1});
-}
-
-/// What a stage's return values add up to, where it counts something.
-inline void add_stage_count(RenderStats& stats, std::string_view stage, uint64_t count) {
-  if (stage == kIntersectionName) stats.primary_hits += count;
-  if (stage == kLightingName) stats.shadow_rays += count;
 }
 
 }  // namespace kd::render

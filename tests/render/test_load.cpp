@@ -46,13 +46,14 @@ TEST_CASE("load: black lights are left out") {
   CHECK(r.scene.lights.size() == 1);
   CHECK(r.scene.skipped.black_lights == 2);
   CHECK(r.scene.skipped.shadow_launches == 2);
+  const std::string_view lighting = render::Lighting<render::OnlyInstance>::kName;
   for (const render::StageTime& stage : r.frame.stats.stages) {
-    if (stage.stage == render::kLightingName) CHECK(stage.launches == 1);
+    if (stage.stage == lighting) CHECK(stage.launches == 1);
   }
   s.lights = {light({0, 0, 0})};
   const Rendered dark(s, {});
   CHECK(dark.frame.stats.shadow_rays == 0);
-  for (const render::StageTime& stage : dark.frame.stats.stages) CHECK(stage.stage != render::kLightingName);
+  for (const render::StageTime& stage : dark.frame.stats.stages) CHECK(stage.stage != lighting);
 }
 
 TEST_CASE("load: sections are read when some stage reads them, and only then") {

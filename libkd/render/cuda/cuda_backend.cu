@@ -42,15 +42,6 @@ __device__ uint32_t tiled_pixel(uint32_t thread, uint32_t width, uint32_t height
 /// are 2 % faster than 56 and 9 for primary and shadow rays and as fast for bounce rays; 48 and 10 are slower.
 constexpr unsigned kTraceBlocks = 8;
 
-/// What a stage's return values are added up in, where they tell something.
-enum Counter : size_t { kHits, kShadowRays, kCounters };
-template <class Stage>
-constexpr Counter kCounter = kCounters;  // in none
-template <class Instances>
-constexpr Counter kCounter<ObjectIntersection<Instances>> = kHits;
-template <class Instances>
-constexpr Counter kCounter<Lighting<Instances>> = kShadowRays;
-
 /// The same for a stage; those that trace through a hierarchy take what they need.
 template <class Stage>
 constexpr unsigned kStageBlocks = 1;
@@ -238,8 +229,7 @@ void DeviceScene::lay_out() {
   frame_.hits = memory_.piece<SurfaceHit>(pixels);
   frame_.colour = memory_.piece<Pixel>(pixels);
   frame_.preview = memory_.piece<uint8_t>(settings_.preview ? 3 * pixels : 0);
-  frame_bytes_ =
-      pixels * (sizeof(SurfaceHit) + sizeof(Pixel) + (scene_.lights.empty() ? 0 : 1) + (settings_.preview ? 3 : 0));
+  frame_bytes_ = pixels * (sizeof(SurfaceHit) + sizeof(Pixel) + (settings_.preview ? 3 : 0));
   targets_.clear();
   for (image::Aov aov : settings_.aovs) {
     const size_t words = static_cast<size_t>(image::aov_row(aov).components) * pixels;
@@ -325,8 +315,8 @@ Result<Frame> cuda_render(const LoadedScene& scene, const RenderSettings& settin
   const FrameView frame = device.frame();
   const size_t tiles = size_t{(frame.width + 7) / 8} * ((frame.height + 3) / 4);
   std::vector<std::unique_ptr<Launch>> launches;
-  const PipelinePlan plan{static_cast<uint32_t>(scene.lights.size()), scene.instances.size() == 1, device.targets(),
-                          settings.preview, settings.gamma_on_film};
+  const PipelinePlan plan{static_cast<uint32_t>(scene.lights.size()), device.targets(), settings.preview,
+                          settings.gamma_on_film};
   cudaError_t launched = cudaSuccess;
   const auto launch = [&](const auto& stage) {
     using Stage = std::decay_t<decltype(stage)>;

@@ -23,13 +23,11 @@ KD_HD inline Vec3f reflected(const LightView& light, const Surface& surface, con
   return light.colour * (material.diffuse * diffuse + material.specular * specular);
 }
 
-constexpr const char* kLightingName = "shadow, colour";
-
 /// Shadow and colour of one light in one launch: apart, each would read the hits and find the surface again. The first
 /// light begins with the ambient colour. Returns how many shadow rays were cast.
 template <class Instances>
 struct Lighting {
-  static constexpr const char* kName = kLightingName;
+  static constexpr const char* kName = "shadow, colour";
   FrameView frame;
   uint32_t light = 0;
 

@@ -107,12 +107,10 @@ KD_HD inline bool any_hit(const SceneView& scene, const Ray& ray, Excluded exclu
   return met;
 }
 
-constexpr const char* kIntersectionName = "object intersection";
-
 /// Returns whether the pixel's ray hit something.
 template <class Instances>
 struct ObjectIntersection {
-  static constexpr const char* kName = kIntersectionName;
+  static constexpr const char* kName = "object intersection";
   FrameView frame;
 
   KD_HD uint32_t operator()(uint32_t pixel) const {
