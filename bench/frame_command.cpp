@@ -7,7 +7,7 @@
 #include "commands.h"
 #include "common/console.h"
 #include "measure_rays.h"
-#include "render/backend.h"
+#include "render/device_group.h"
 #include "scene/parse_scene.h"
 #include "sys/parallel.h"
 #include "table.h"
@@ -28,17 +28,12 @@ struct Options {
 
 using Frames = std::vector<render::RenderStats>;
 
-/// The same frame some times, each after its own upload.
-Result<Frames> render_frames(const Options& o, const render::Device& device, const render::LoadedScene& scene,
-                             render::RenderSettings settings, int warm_ups) {
-  settings.warm_ups = warm_ups;
-  Frames frames;
-  for (int i = 0; i < o.repeats; ++i) {
-    auto frame = device.backend->render(scene, settings, device.index);
-    if (!frame) return frame.error();
-    frames.push_back(std::move(frame->stats));
-  }
-  return frames;
+/// Adds what the next frame of an open scene takes.
+Result<void> add_frame(render::DeviceGroup& group, Frames& frames) {
+  auto frame = group.render(tools::progress_bar("rendering", true));
+  if (!frame) return frame.error();
+  frames.push_back(std::move(frame->stats));
+  return {};
 }
 
 template <class Seconds>
@@ -71,18 +66,24 @@ Result<void> measure(const Options& o) {
   if (!scene) return scene.error();
   render::RenderSettings settings;
   settings.gamma_on_film = o.gamma;
-  settings.progress = tools::progress_bar("rendering", true);
   auto loaded = render::load_scene(*scene, settings);
   if (!loaded) return loaded.error();
   fmt::print("{} on {}, {} x {}, medians of {}\n\n", o.scene, device->description, loaded->film.width,
              loaded->film.height, o.repeats);
 
-  auto first = render_frames(o, *device, *loaded, settings, 0);
-  if (!first) return first.error();
-  auto later = render_frames(o, *device, *loaded, settings, kWarmUps);
-  if (!later) return later.error();
-  fmt::print("{}", table_of(*first, *later).markdown());
-  const render::RenderStats& stats = later->front();
+  Frames first, later;
+  for (int i = 0; i < o.repeats; ++i) {
+    auto group = render::DeviceGroup::open({*device}, false, *loaded, settings);
+    if (!group) return group.error();
+    if (auto added = add_frame(*group, first); !added) return added;
+    if (i + 1 < o.repeats) continue;
+    for (int frame = -kWarmUps; frame < o.repeats; ++frame) {
+      if (frame == 0) later.clear();
+      if (auto added = add_frame(*group, later); !added) return added;
+    }
+  }
+  fmt::print("{}", table_of(first, later).markdown());
+  const render::RenderStats& stats = later.front();
   fmt::print("\n{} primary rays, {} hits, {} shadow rays\n", stats.primary_rays, stats.primary_hits, stats.shadow_rays);
   return {};
 }

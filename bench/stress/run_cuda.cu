@@ -8,19 +8,10 @@ namespace kd::stress {
 
 namespace {
 
-constexpr unsigned kBlock = 128;
+using render::kBlock;
 /// Each thread takes this many rays or more, so that adding up tallies costs little.
 constexpr uint64_t kRaysPerThread = 4;
 constexpr uint64_t kMostBlocks = 132 * 32;
-
-/// Returns an Error from the enclosing function if a CUDA call fails.
-#define KD_CUDA_TRY(call, action)                                     \
-  do {                                                                \
-    if (const cudaError_t status_ = (call); status_ != cudaSuccess) { \
-      cudaGetLastError();                                             \
-      return render::cuda_error(status_, action);                     \
-    }                                                                 \
-  } while (false)
 
 /// What a launch adds to. Displacements as the bits of doubles that are not negative, whose order is that of integers.
 struct DeviceTally {

@@ -1,5 +1,6 @@
 #include "render/backend.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 
@@ -15,19 +16,19 @@ namespace kd::render {
 namespace {
 
 #if !KD_WITH_CUDA
-Result<std::string> cuda_not_built(int) {
-  return Error{ErrorClass::device, "", "this build has no CUDA backend (configured with KD_CUDA=OFF, or without nvcc)"};
-}
+constexpr const char* kNotBuilt = "this build has no CUDA backend (configured with KD_CUDA=OFF, or without nvcc)";
+Result<int> cuda_count() { return Error{ErrorClass::device, "", kNotBuilt}; }
+Result<std::string> cuda_probe(int) { return Error{ErrorClass::device, "", kNotBuilt}; }
 #endif
 
 /// In the order in which "auto" tries them.
 constexpr std::array kBackends {
 #if KD_WITH_CUDA
-  Backend{"cuda", cuda_probe, cuda_render, cuda_trace},
+  Backend{"cuda", cuda_count, cuda_probe, cuda_open, cuda_trace},
 #else
-  Backend{"cuda", cuda_not_built, nullptr, nullptr},
+  Backend{"cuda", cuda_count, cuda_probe, nullptr, nullptr},
 #endif
-      Backend{"cpu", cpu_probe, cpu_render, cpu_trace},
+      Backend{"cpu", cpu_count, cpu_probe, cpu_open, cpu_trace},
 };
 
 Result<Device> choose_automatically() {
@@ -42,30 +43,73 @@ Result<Device> choose_automatically() {
   return Error{ErrorClass::device, "--device auto", reason};
 }
 
+/// The devices that one name of the list stands for.
+Result<std::vector<Device>> named_devices(std::string_view name) {
+  const std::string where = fmt::format("--device {}", name);
+  const Error no_device{ErrorClass::usage, where,
+                        "not a device: use auto, cpu, cuda, cuda:N, cuda:all, or a list such as cuda:0,cuda:1"};
+  const size_t colon = name.find(':');
+  const std::string_view index = colon == std::string_view::npos ? "0" : name.substr(colon + 1);
+  const auto backend = std::find_if(kBackends.begin(), kBackends.end(),
+                                    [&](const Backend& b) { return b.name == name.substr(0, colon); });
+  if (backend == kBackends.end() || (backend->name == "cpu" && colon != std::string_view::npos)) return no_device;
+  int first = 0, last = 0;
+  if (index == "all") {
+    const auto count = backend->count();
+    if (!count) return Error{count.error().error_class, where, count.error().line()};
+    last = *count - 1;
+  } else {
+    const auto parsed = std::from_chars(index.data(), index.data() + index.size(), first);
+    if (parsed.ec != std::errc{} || parsed.ptr != index.data() + index.size() || first < 0) return no_device;
+    last = first;
+  }
+  std::vector<Device> devices;
+  for (int i = first; i <= last; ++i) {
+    auto description = backend->probe(i);
+    if (!description) return Error{description.error().error_class, where, description.error().line()};
+    devices.push_back({&*backend, i, *description, ""});
+  }
+  return devices;
+}
+
 }  // namespace
 
 bool built_with_cuda() { return KD_WITH_CUDA; }
 
-Result<Device> choose_device(std::string_view wanted) {
-  if (wanted == "auto") return choose_automatically();
-  const std::string where = fmt::format("--device {}", wanted);
-  const size_t colon = wanted.find(':');
-  const std::string_view name = wanted.substr(0, colon);
-  int index = 0;
-  if (colon != std::string_view::npos) {
-    const std::string_view digits = wanted.substr(colon + 1);
-    const auto parsed = std::from_chars(digits.data(), digits.data() + digits.size(), index);
-    if (name == "cpu" || parsed.ec != std::errc{} || parsed.ptr != digits.data() + digits.size() || index < 0) {
-      return Error{ErrorClass::usage, where, "not a device: use auto, cpu, cuda or cuda:N"};
+Device cpu_device() { return {&kBackends.back(), 0, *cpu_probe(0), ""}; }
+
+Result<std::vector<Device>> choose_devices(std::string_view wanted) {
+  if (wanted == "auto") {
+    auto device = choose_automatically();
+    if (!device) return device.error();
+    return std::vector{*device};
+  }
+  std::vector<Device> devices;
+  for (size_t begin = 0; begin <= wanted.size();) {
+    const size_t end = std::min(wanted.find(',', begin), wanted.size());
+    auto named = named_devices(wanted.substr(begin, end - begin));
+    if (!named) return named.error();
+    for (Device& device : *named) {
+      const bool twice = std::any_of(devices.begin(), devices.end(), [&](const Device& d) {
+        return d.backend == device.backend && d.index == device.index;
+      });
+      if (twice) {
+        return Error{ErrorClass::usage, fmt::format("--device {}", wanted), device.description + " is named twice"};
+      }
+      devices.push_back(std::move(device));
     }
+    begin = end + 1;
   }
-  for (const Backend& backend : kBackends) {
-    if (backend.name != name) continue;
-    auto description = backend.probe(index);
-    if (!description) return Error{description.error().error_class, where, description.error().line()};
-    return Device{&backend, index, *description, ""};
+  return devices;
+}
+
+Result<Device> choose_device(std::string_view wanted) {
+  auto devices = choose_devices(wanted);
+  if (!devices) return devices.error();
+  if (devices->size() > 1) {
+    return Error{ErrorClass::usage, fmt::format("--device {}", wanted), "this runs on one device: name one"};
   }
-  return Error{ErrorClass::usage, where, "not a device: use auto, cpu, cuda or cuda:N"};
+  return devices->front();
 }
 
 }  // namespace kd::render

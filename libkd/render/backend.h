@@ -1,48 +1,26 @@
 // Backends: what runs the pipeline. To add one: its file, and a row in backend.cpp.
 #pragma once
 
-#include <cstdint>
-#include <span>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "image/film.h"
 #include "render/load.h"
+#include "render/renderer.h"
 #include "render/trace.h"
 #include "sys/result.h"
 
 namespace kd::render {
 
-struct StageTime {
-  std::string stage;
-  double seconds = 0;
-  uint32_t launches = 0;
-};
-
-struct RenderStats {
-  double upload_seconds = 0;    // objects to the device, expanded
-  double render_seconds = 0;    // stages, first launch to last
-  double download_seconds = 0;  // the film's way back
-  std::vector<StageTime> stages;
-  uint64_t primary_rays = 0;
-  uint64_t primary_hits = 0;
-  uint64_t shadow_rays = 0;
-  uint64_t object_bytes = 0;  // on the device: nodes, references, triangles, attributes
-  uint64_t frame_bytes = 0;   // on the device: rays, hits, film, AOVs
-};
-
-struct Frame {
-  image::Film film;
-  std::vector<uint8_t> preview;  // RGB, 8 bits; empty unless asked for
-  RenderStats stats;
-};
-
 struct Backend {
   std::string_view name;
-  /// What the device is called, or why there is none.
+  /// How many devices there are, or why there is none.
+  Result<int> (*count)();
+  /// What the device is called, or why there is none of this index.
   Result<std::string> (*probe)(int index);
-  Result<Frame> (*render)(const LoadedScene& scene, const RenderSettings& settings, int index);
+  /// The scene on the device. It outlives the renderer and keeps its place in memory.
+  Result<std::unique_ptr<Renderer>> (*open)(const LoadedScene& scene, const RenderSettings& settings, int index);
   Result<TraceOutcome> (*trace)(const nkd::ObjectFile& object, const TraceJob& job, int index);
 };
 
@@ -54,9 +32,16 @@ struct Device {
   std::string reason;       // why this one, if the choice was ours; else empty
 };
 
-/// "auto", "cpu", "cuda" or "cuda:N". ErrorClass::usage for anything else, ErrorClass::device for a device that is not
-/// there. "auto" takes the first CUDA device, or else the CPU.
+/// "auto", "cpu", "cuda", "cuda:N", "cuda:all", or several of these with commas between them; none twice.
+/// ErrorClass::usage for anything else, ErrorClass::device for a device that is not there. "auto", which stands alone,
+/// takes the first CUDA device, or else the CPU.
+Result<std::vector<Device>> choose_devices(std::string_view wanted);
+
+/// The same for what runs on one device: ErrorClass::usage for a list.
 Result<Device> choose_device(std::string_view wanted);
+
+/// The CPU, whatever else there is.
+Device cpu_device();
 
 /// Whether this build has the CUDA backend.
 bool built_with_cuda();

@@ -2,12 +2,12 @@
 
 #include <array>
 #include <atomic>
+#include <memory>
 
 #include <fmt/format.h>
 
 #include "render/expand.h"
-#include "render/pipeline.h"
-#include "render/stage_times.h"
+#include "render/strip.h"
 #include "sys/parallel.h"
 #include "sys/timer.h"
 
@@ -26,7 +26,6 @@ const T* data_or_null(std::span<const T> s) {
 struct Objects {
   std::vector<HugeArray<TriangleVertices>> triangles;
   std::vector<ShadedObjectView> views;
-  uint64_t bytes = 0;
 
   explicit Objects(const LoadedScene& scene) : triangles(scene.objects.size()), views(scene.objects.size()) {
     for (size_t i = 0; i < scene.objects.size(); ++i) {
@@ -42,10 +41,6 @@ struct Objects {
                   data_or_null(a.normal_indices),
                   data_or_null(a.materials),
                   data_or_null(a.material_ids)};
-      bytes += file.geometry().nodes.size_bytes() + file.geometry().references.size_bytes() +
-               triangles[i].size() * sizeof(TriangleVertices) + a.source_primitives.size_bytes() +
-               a.normals.size_bytes() + a.normal_indices.size_bytes() + a.materials.size_bytes() +
-               a.material_ids.size_bytes();
     }
   }
 };
@@ -63,73 +58,79 @@ uint64_t for_each_pixel(const Stage& stage, size_t pixels, SharedProgress& progr
   return total;
 }
 
-}  // namespace
+class CpuRenderer final : public Renderer {
+ public:
+  CpuRenderer(const LoadedScene& scene, const RenderSettings& settings)
+      : scene_(scene), settings_(settings), objects_(scene), instances_(instance_views(scene)) {
+    holding_.upload_seconds = opening_.seconds();
+    for (const LoadedObject& object : scene.objects) holding_.object_bytes += object_bytes(object);
+    holding_.scene_bytes = instances_.size() * sizeof(InstanceView) + scene.hierarchy.size() * sizeof(HierarchyNode) +
+                           scene.lights.size() * sizeof(LightView);
+    holding_.strip_bytes = size_t{scene.film.width} * scene.film.height * bytes_a_pixel(settings);
+  }
 
-Result<std::string> cpu_probe(int) { return fmt::format("CPU: {} threads", thread_count()); }
+  uint32_t max_rows() const override { return scene_.film.height; }
+  const Holding& holding() const override { return holding_; }
+  Result<RenderStats> render(Strip strip, Frame& frame, const Progress& progress) override;
 
-Result<Frame> cpu_render(const LoadedScene& scene, const RenderSettings& settings, int) {
-  Frame out;
-  Timer timer;
-  const Objects objects(scene);
-  const std::vector<InstanceView> instances = instance_views(scene);
-  out.stats.upload_seconds = timer.lap();
-  out.stats.object_bytes = objects.bytes;
+ private:
+  Timer opening_;
+  const LoadedScene& scene_;
+  RenderSettings settings_;
+  Objects objects_;
+  std::vector<InstanceView> instances_;
+  std::vector<SurfaceHit> hits_;
+  Holding holding_;
+};
 
-  const size_t pixels = size_t{scene.film.width} * scene.film.height;
-  std::vector<SurfaceHit> hits(pixels);
-  out.film.width = scene.film.width;
-  out.film.height = scene.film.height;
-  out.film.colour.resize(4 * pixels);
-  if (settings.preview) out.preview.resize(3 * pixels);
+Result<RenderStats> CpuRenderer::render(Strip strip, Frame& frame, const Progress& progress) {
+  const size_t pixels = size_t{scene_.film.width} * strip.rows, first = size_t{scene_.film.width} * strip.first_row;
+  hits_.resize(std::max(hits_.size(), pixels));
   std::vector<AovTarget> targets;
-  for (image::Aov aov : settings.aovs) {
-    out.film.aovs.push_back({aov, std::vector<uint32_t>(static_cast<size_t>(image::aov_row(aov).components) * pixels)});
+  for (image::AovBuffer& buffer : frame.film.aovs) {
+    const auto components = static_cast<size_t>(image::aov_row(buffer.aov).components);
+    targets.push_back({buffer.aov, buffer.words.data() + components * first});
   }
-  out.stats.frame_bytes = pixels * (sizeof(SurfaceHit) + sizeof(Pixel)) + out.preview.size();
-  for (image::AovBuffer& buffer : out.film.aovs) {
-    targets.push_back({buffer.aov, buffer.words.data()});
-    out.stats.frame_bytes += buffer.words.size() * sizeof(uint32_t);
-  }
+  FrameView view = strip_view(scene_, settings_, strip);
+  view.scene.hierarchy = scene_.hierarchy.data();
+  view.scene.instances = instances_.data();
+  view.scene.objects = objects_.views.data();
+  view.scene.overrides = scene_.overrides.data();
+  view.scene.lights = scene_.lights.data();
+  view.hits = hits_.data();
+  view.colour = reinterpret_cast<Pixel*>(frame.film.colour.data()) + first;
+  view.preview = frame.preview.empty() ? nullptr : frame.preview.data() + 3 * first;
 
-  FrameView frame;
-  frame.scene = {scene.hierarchy.data(), instances.data(),    objects.views.data(),
-                 scene.overrides.data(), scene.lights.data(), static_cast<uint32_t>(instances.size()),
-                 scene.ambient,          scene.background};
-  frame.camera = scene.camera;
-  frame.width = scene.film.width;
-  frame.height = scene.film.height;
-  frame.hits = hits.data();
-  frame.colour = reinterpret_cast<Pixel*>(out.film.colour.data());
-  frame.preview = out.preview.data();
-  frame.inverse_gamma = 1 / settings.gamma;
-
-  const PipelinePlan plan{static_cast<uint32_t>(scene.lights.size()), targets, settings.preview,
-                          settings.gamma_on_film};
-  SharedProgress progress(settings.progress);
+  const PipelinePlan plan = pipeline_plan(scene_, settings_, targets);
+  RenderStats stats;
+  SharedProgress shared(progress);
   size_t launched = 0;
   std::array<uint64_t, kCounters + 1> totals{};  // the last: of stages that count nothing
   const auto launch = [&](const auto& stage) {
     Timer stage_timer;
     const double share = static_cast<double>(launched++) / static_cast<double>(plan.launches());
-    const uint64_t count = for_each_pixel(stage, pixels, progress, share);
-    add_stage_time(out.stats, stage.kName, stage_timer.seconds());
-    totals[kCounter<std::decay_t<decltype(stage)>>] += count;
-    return count;
+    const uint64_t count = for_each_pixel(stage, pixels, shared, share);
+    stats.add_stage(stage.kName, stage_timer.seconds());
+    return totals[kCounter<std::decay_t<decltype(stage)>>] += count;
   };
   Timer whole;
-  for (int warm_ups = settings.warm_ups; warm_ups >= 0; --warm_ups) {
-    out.stats.stages.clear();
-    totals.fill(0);
-    launched = 0;
-    whole.lap();
-    run_pipeline(frame, plan, launch, launch);
-  }
-  if (progress.cancelled()) return Error{ErrorClass::interrupted, "", "interrupted"};
-  out.stats.render_seconds = whole.seconds();
-  out.stats.primary_rays = pixels;
-  out.stats.primary_hits = totals[kHits];
-  out.stats.shadow_rays = totals[kShadowRays];
-  return out;
+  run_pipeline(view, plan, launch, launch);
+  if (shared.cancelled()) return Error{ErrorClass::interrupted, "", "interrupted"};
+  stats.render_seconds = whole.seconds();
+  stats.primary_rays = pixels;
+  stats.primary_hits = totals[kHits];
+  stats.shadow_rays = totals[kShadowRays];
+  return stats;
+}
+
+}  // namespace
+
+Result<int> cpu_count() { return 1; }
+
+Result<std::string> cpu_probe(int) { return fmt::format("CPU: {} threads", thread_count()); }
+
+Result<std::unique_ptr<Renderer>> cpu_open(const LoadedScene& scene, const RenderSettings& settings, int) {
+  return std::unique_ptr<Renderer>(std::make_unique<CpuRenderer>(scene, settings));
 }
 
 }  // namespace kd::render

@@ -11,7 +11,6 @@
 #include "render/view.h"
 #include "scene/instances.h"
 #include "scene/scene.h"
-#include "sys/progress.h"
 #include "sys/result.h"
 
 namespace kd::render {
@@ -21,8 +20,6 @@ struct RenderSettings {
   bool preview = false;
   double gamma = 2.2;  // > 0; of the preview, and of the film if gamma_on_film
   bool gamma_on_film = false;
-  Progress progress = {};  // may cancel the render: ErrorClass::interrupted
-  int warm_ups = 0;        // frames rendered before the one that is kept and timed
 };
 
 /// One object's sections that this render reads; the others are empty and stay on disk.

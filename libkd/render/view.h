@@ -70,12 +70,13 @@ struct alignas(16) Pixel {
   float alpha;
 };
 
-/// The buffers of one frame, one element a pixel in row order. Those that no stage uses are null.
+/// The buffers of a strip of a frame, one element a pixel in row order. Those that no stage uses are null.
 struct FrameView {
   SceneView scene;
   CameraView camera;
-  uint32_t width = 0;
+  uint32_t width = 0;  // of the strip, and so is the height
   uint32_t height = 0;
+  uint32_t first_row = 0;  // the film's row that is the strip's first
   SurfaceHit* hits = nullptr;
   Pixel* colour = nullptr;
   uint8_t* preview = nullptr;  // RGB

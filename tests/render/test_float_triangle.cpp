@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "core/float_triangle.h"
+#include "render/cpu_backend.h"
 #include "render/float_ray.h"
 #include "worlds.h"
 

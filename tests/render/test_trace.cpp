@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "render/cpu_backend.h"
 #include "worlds.h"
 
 using namespace kd;

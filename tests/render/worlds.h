@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "../nkd/object_bytes.h"
-#include "render/cpu_backend.h"
+#include "render/device_group.h"
 #include "render/load.h"
 
 namespace kd::test {
@@ -59,7 +59,8 @@ struct Rendered {
   render::Frame frame;
 
   Rendered(const scene::Scene& s, const render::RenderSettings& settings)
-      : scene(*render::load_scene(s, settings)), frame(*render::cpu_render(scene, settings, 0)) {}
+      : scene(*render::load_scene(s, settings)),
+        frame(*render::DeviceGroup::open({render::cpu_device()}, false, scene, settings)->render({})) {}
 
   const std::vector<uint32_t>& words(image::Aov aov) const {
     for (const image::AovBuffer& b : frame.film.aovs) {

@@ -94,7 +94,9 @@ render::Frame render_all(const scene::Scene& scene, const render::Device& device
   settings.preview = true;
   auto loaded = render::load_scene(scene, settings);
   REQUIRE_MESSAGE(loaded, (loaded ? "" : loaded.error().line()));
-  auto frame = device.backend->render(*loaded, settings, device.index);
+  auto group = render::DeviceGroup::open({device}, false, *loaded, settings);
+  REQUIRE_MESSAGE(group, (group ? "" : group.error().line()));
+  auto frame = group->render({});
   REQUIRE_MESSAGE(frame, (frame ? "" : frame.error().line()));
   return std::move(*frame);
 }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/vec.h"
-#include "render/backend.h"
+#include "render/device_group.h"
 #include "scene/scene.h"
 #include "support/temp_folder.h"
 

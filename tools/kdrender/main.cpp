@@ -6,7 +6,7 @@
 #include "image/exr.h"
 #include "image/png.h"
 #include "kdrender/render_report.h"
-#include "render/backend.h"
+#include "render/device_group.h"
 #include "scene/parse_scene.h"
 #include "sys/parallel.h"
 #include "sys/timer.h"
@@ -35,7 +35,7 @@ void add_options(CLI::App& app, Options& o) {
       ->required()
       ->check(file_name());
   app.add_option("--preview", o.preview, "Write an 8-bit PNG too, through the gamma stage");
-  app.add_option("--device", o.device, "auto, cpu, cuda or cuda:N")->capture_default_str();
+  app.add_option("--device", o.device, "auto, cpu, cuda, cuda:N, cuda:all, or a list of these")->capture_default_str();
   app.add_option("--aov", o.aovs, aov_help);
   app.add_option("--gamma", o.gamma, "Gamma of the preview")->check(number(0.1, 10))->capture_default_str();
   app.add_flag("--gamma-exr", o.gamma_on_exr, "Apply the gamma to the EXR as well; its header then says so");
@@ -65,8 +65,8 @@ Result<void> render_scene(const Options& o) {
   const ThreadLimit limit(o.threads);
   auto aovs = image::parse_aovs(o.aovs);
   if (!aovs) return aovs.error();
-  auto device = render::choose_device(o.device);
-  if (!device) return device.error();
+  auto devices = render::choose_devices(o.device);
+  if (!devices) return devices.error();
 
   RenderTimes times;
   Timer timer;
@@ -76,26 +76,29 @@ Result<void> render_scene(const Options& o) {
   if (auto usable = check_outputs({o.output, o.preview, o.stats}, inputs_of(o, *scene)); !usable) return usable;
   catch_interrupts();
   const Progress progress = progress_bar("rendering", o.quiet);
-  const render::RenderSettings settings{*aovs, !o.preview.empty(), o.gamma, o.gamma_on_exr, progress};
+  const render::RenderSettings settings{*aovs, !o.preview.empty(), o.gamma, o.gamma_on_exr};
   auto loaded = render::load_scene(*scene, settings);
   if (!loaded) return loaded.error();
   times.load = timer.lap();
 
   const bool text = !o.quiet && o.stats != "-";
   if (text) {
-    fmt::print("{}: on {}{}\n", o.scene, device->description,
-               device->reason.empty() ? "" : fmt::format(" ({})", device->reason));
+    const std::string& reason = devices->front().reason;
+    fmt::print("{}: on {}{}\n", o.scene, described(*devices), reason.empty() ? "" : fmt::format(" ({})", reason));
   }
-  auto frame = device->backend->render(*loaded, settings, device->index);
+  auto group = render::DeviceGroup::open(*devices, o.device == "auto", *loaded, settings);
+  if (!group) return group.error();
+  auto frame = group->render(progress);
   keep_going(progress, 1);
   if (!frame) return frame.error();
+  if (!group->taken_over().empty()) warn(kKdrender, group->taken_over() + "; the CPU took over");
   timer.lap();
   if (auto written = write_images(o, *frame); !written) return written;
   times.write = timer.lap();
 
-  if (text) print_render(o.output, *loaded, frame->stats, times);
+  if (text) print_render(o.output, *group, *loaded, frame->stats, times);
   if (o.stats.empty()) return {};
-  return write_report(o.stats, render_json(o.scene, o.output, *device, *loaded, frame->stats, times));
+  return write_report(o.stats, render_json(o.scene, o.output, *group, *loaded, frame->stats, times));
 }
 
 }  // namespace

@@ -26,9 +26,19 @@ size_t opened_objects(const render::LoadedScene& scene) {
                                            [](const auto& object) { return object.file.has_value(); }));
 }
 
+double mrays_per_second(const render::RenderStats& stats) {
+  return static_cast<double>(stats.primary_rays + stats.shadow_rays) / std::max(stats.render_seconds, 1e-9) * 1e-6;
+}
+
 }  // namespace
 
-Json render_json(const std::string& scene_path, const std::string& output, const render::Device& device,
+std::string described(const std::vector<render::Device>& devices) {
+  std::string text;
+  for (const render::Device& device : devices) text += (text.empty() ? "" : ", ") + device.description;
+  return text;
+}
+
+Json render_json(const std::string& scene_path, const std::string& output, const render::DeviceGroup& group,
                  const render::LoadedScene& scene, const render::RenderStats& stats, const RenderTimes& times) {
   Json stages = Json::array();
   for (const render::StageTime& stage : stats.stages) {
@@ -43,17 +53,22 @@ Json render_json(const std::string& scene_path, const std::string& output, const
                        {"max_displacement", object.file->summary().max_displacement}});
   }
   const render::Skipped& skipped = scene.skipped;
+  const render::Holding holding = group.holding();
   return {
       {"version", 1},
       {"tool", version_text()},
       {"scene", scene_path},
       {"output", output},
-      {"device", {{"backend", device.backend->name}, {"description", device.description}, {"reason", device.reason}}},
+      {"device",
+       {{"backend", group.devices().front().backend->name},
+        {"description", described(group.devices())},
+        {"reason", group.devices().front().reason},
+        {"strips", group.strips()}}},
       {"film", {{"width", scene.film.width}, {"height", scene.film.height}}},
       {"seconds",
        {{"parse", times.parse},
         {"load", times.load},
-        {"upload", stats.upload_seconds},
+        {"upload", holding.upload_seconds},
         {"stages", stats.render_seconds},
         {"download", stats.download_seconds},
         {"write", times.write}}},
@@ -64,7 +79,12 @@ Json render_json(const std::string& scene_path, const std::string& output, const
         {"triangles_as_seen", instanced_triangles(scene)},
         {"lights", scene.lights.size()}}},
       {"rays", {{"primary", stats.primary_rays}, {"primary_hits", stats.primary_hits}, {"shadow", stats.shadow_rays}}},
-      {"bytes", {{"objects", stats.object_bytes}, {"frame", stats.frame_bytes}}},
+      {"mrays_per_second", mrays_per_second(stats)},
+      {"bytes",
+       {{"objects", holding.object_bytes},
+        {"scene", holding.scene_bytes},
+        {"frame", holding.strip_bytes},
+        {"device", holding.device_bytes}}},
       {"objects", objects},
       {"skipped",
        {{"objects_not_opened", skipped.objects},
@@ -76,19 +96,19 @@ Json render_json(const std::string& scene_path, const std::string& output, const
   };
 }
 
-void print_render(const std::string& output, const render::LoadedScene& scene, const render::RenderStats& stats,
-                  const RenderTimes& times) {
-  const uint64_t rays = stats.primary_rays + stats.shadow_rays;
+void print_render(const std::string& output, const render::DeviceGroup& group, const render::LoadedScene& scene,
+                  const render::RenderStats& stats, const RenderTimes& times) {
+  const render::Holding holding = group.holding();
   fmt::print("  {} objects, {} instances, {} triangles as seen, {} lights\n", opened_objects(scene),
              scene.instances.size(), instanced_triangles(scene), scene.lights.size());
-  fmt::print("  {} primary rays ({} hit), {} shadow rays ({} not needed): {:.2f} Mrays/s\n", stats.primary_rays,
+  fmt::print("  {} primary rays ({} hit), {} shadow rays ({} not needed): {:.2f} Mrays/s{}\n", stats.primary_rays,
              stats.primary_hits, stats.shadow_rays, stats.primary_hits * scene.lights.size() - stats.shadow_rays,
-             static_cast<double>(rays) / std::max(stats.render_seconds, 1e-9) * 1e-6);
+             mrays_per_second(stats), group.strips() > 1 ? fmt::format(", in {} strips", group.strips()) : "");
   fmt::print(
       "  load {:.3f} s, upload {:.3f} s, stages {:.4f} s, download {:.4f} s, write {:.3f} s; {:.1f} MiB of objects on "
       "the device\n",
-      times.load, stats.upload_seconds, stats.render_seconds, stats.download_seconds, times.write,
-      static_cast<double>(stats.object_bytes) / (1 << 20));
+      times.load, holding.upload_seconds, stats.render_seconds, stats.download_seconds, times.write,
+      static_cast<double>(holding.object_bytes) / (1 << 20));
   fmt::print("{}: {} x {}\n", output, scene.film.width, scene.film.height);
 }
 

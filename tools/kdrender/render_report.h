@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/report.h"
-#include "render/backend.h"
+#include "render/device_group.h"
 
 namespace kd::tools {
 
@@ -12,10 +12,13 @@ struct RenderTimes {
   double write = 0;
 };
 
-Json render_json(const std::string& scene_path, const std::string& output, const render::Device& device,
+Json render_json(const std::string& scene_path, const std::string& output, const render::DeviceGroup& group,
                  const render::LoadedScene& scene, const render::RenderStats& stats, const RenderTimes& times);
 
-void print_render(const std::string& output, const render::LoadedScene& scene, const render::RenderStats& stats,
-                  const RenderTimes& times);
+void print_render(const std::string& output, const render::DeviceGroup& group, const render::LoadedScene& scene,
+                  const render::RenderStats& stats, const RenderTimes& times);
+
+/// The group's devices by name.
+std::string described(const std::vector<render::Device>& devices);
 
 }  // namespace kd::tools

@@ -15,7 +15,7 @@ constexpr double kFar = 1e300;
 /// Of length 1.
 KD_HD KD_INLINE Vec3d primary_direction(const FrameView& frame, uint32_t pixel) {
   const CameraView& c = frame.camera;
-  const uint32_t column = pixel % frame.width, row = pixel / frame.width;
+  const uint32_t column = pixel % frame.width, row = frame.first_row + pixel / frame.width;
   return normalised(c.corner + c.right * static_cast<double>(column) + c.down * static_cast<double>(row));
 }
 

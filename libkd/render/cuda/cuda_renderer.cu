@@ -1,0 +1,193 @@
+// A scene on a CUDA device and the buffers of a strip; renders as many strips as it is asked for.
+#include <algorithm>
+#include <deque>
+#include <optional>
+
+#include "render/cuda/cuda_backend.h"
+#include "render/cuda/device_scene.h"
+#include "render/cuda/stage_kernel.h"
+#include "render/strip.h"
+#include "sys/timer.h"
+
+namespace kd::render {
+
+namespace {
+
+/// The buffers of a strip. `lay_out` runs twice: once to add up sizes, once to hand out addresses.
+class StripBuffers {
+ public:
+  /// For `rows` rows, or as many as there is memory for.
+  Result<void> create(const LoadedScene& scene, const RenderSettings& settings);
+  uint32_t rows() const { return rows_; }
+  size_t bytes() const { return memory_.bytes(); }
+  void set(FrameView& view) const {
+    view.hits = hits_;
+    view.colour = colour_;
+    view.preview = preview_;
+  }
+  std::span<const AovTarget> targets() const { return targets_; }
+  unsigned long long* totals() const { return totals_; }
+
+ private:
+  void lay_out(size_t pixels, const RenderSettings& settings);
+
+  DeviceMemory memory_;
+  uint32_t rows_ = 0;
+  SurfaceHit* hits_ = nullptr;
+  Pixel* colour_ = nullptr;
+  uint8_t* preview_ = nullptr;
+  std::vector<AovTarget> targets_;
+  unsigned long long* totals_ = nullptr;
+};
+
+void StripBuffers::lay_out(size_t pixels, const RenderSettings& settings) {
+  memory_.section("hits");
+  hits_ = memory_.piece<SurfaceHit>(pixels);
+  memory_.section("film");
+  colour_ = memory_.piece<Pixel>(pixels);
+  preview_ = memory_.piece<uint8_t>(settings.preview ? 3 * pixels : 0);
+  totals_ = memory_.piece<unsigned long long>(kCounters);
+  memory_.section("AOVs");
+  targets_.clear();
+  for (image::Aov aov : settings.aovs) {
+    const auto components = static_cast<size_t>(image::aov_row(aov).components);
+    targets_.push_back({aov, memory_.piece<uint32_t>(components * pixels)});
+  }
+}
+
+Result<void> StripBuffers::create(const LoadedScene& scene, const RenderSettings& settings) {
+  constexpr uint32_t kTileRows = 4;  // of a warp's pixels
+  for (rows_ = scene.film.height;; rows_ = (rows_ / 2 + kTileRows - 1) / kTileRows * kTileRows) {
+    const size_t pixels = size_t{scene.film.width} * rows_;
+    lay_out(pixels, settings);
+    const auto allocated = memory_.allocate();
+    if (allocated) {
+      lay_out(pixels, settings);
+      return {};
+    }
+    if (allocated.error().error_class != ErrorClass::resource || rows_ <= kTileRows) return allocated;
+  }
+}
+
+class CudaRenderer final : public Renderer {
+ public:
+  CudaRenderer(const LoadedScene& scene, const RenderSettings& settings, int index)
+      : scene_(scene), settings_(settings), index_(index) {}
+
+  Result<void> open();
+  uint32_t max_rows() const override { return buffers_.rows(); }
+  const Holding& holding() const override { return holding_; }
+  Result<RenderStats> render(Strip strip, Frame& frame, const Progress& progress) override;
+
+ private:
+  Result<RenderStats> run_stages(const FrameView& view);
+  Result<void> download_strip(const FrameView& view, Frame& frame);
+
+  const LoadedScene& scene_;
+  RenderSettings settings_;
+  int index_;
+  Stream stream_;
+  DeviceScene device_scene_;
+  StripBuffers buffers_;
+  Holding holding_;
+};
+
+Result<void> CudaRenderer::open() {
+  Timer timer;
+  KD_CUDA_TRY(cudaSetDevice(index_), "choosing the device");
+  KD_CUDA_TRY(stream_.create(), "starting");
+  if (auto created = device_scene_.create(scene_, stream_); !created) return created;
+  if (auto created = buffers_.create(scene_, settings_); !created) return created;
+  holding_.upload_seconds = timer.seconds();
+  for (const LoadedObject& object : scene_.objects) holding_.object_bytes += object_bytes(object);
+  holding_.scene_bytes = device_scene_.bytes() - holding_.object_bytes;
+  holding_.strip_bytes = buffers_.bytes();
+  size_t free = 0, total = 0;
+  KD_CUDA_TRY(cudaMemGetInfo(&free, &total), "asking for the device's memory");
+  holding_.device_bytes = total;
+  return {};
+}
+
+struct Launch {
+  const char* stage;
+  Event start, end;
+};
+
+Result<RenderStats> CudaRenderer::run_stages(const FrameView& view) {
+  unsigned long long* const device_totals = buffers_.totals();
+  std::deque<Launch> launches;  // whose elements stay where they are
+  cudaError_t status = cudaMemsetAsync(device_totals, 0, kCounters * sizeof(*device_totals), stream_);
+  const auto launch = [&](const auto& stage) {
+    using Stage = std::decay_t<decltype(stage)>;
+    Launch& record = launches.emplace_back(Stage::kName);
+    record.start.record(stream_);
+    const cudaError_t launched = launch_stage(stage, device_totals + kCounter<Stage>, stream_);
+    if (status == cudaSuccess) status = launched;
+    record.end.record(stream_);
+  };
+  const auto launch_and_count = [&](const auto& stage) -> uint64_t {
+    launch(stage);
+    unsigned long long count = 0;
+    const cudaError_t copied = download(&count, device_totals + kCounter<std::decay_t<decltype(stage)>>, 1, stream_);
+    const cudaError_t waited = copied == cudaSuccess ? cudaStreamSynchronize(stream_) : copied;
+    if (status == cudaSuccess) status = waited;
+    return count;
+  };
+  run_pipeline(view, pipeline_plan(scene_, settings_, buffers_.targets()), launch, launch_and_count);
+  unsigned long long totals[kCounters] = {};
+  if (status == cudaSuccess) status = download(totals, device_totals, kCounters, stream_);
+  if (status == cudaSuccess) status = cudaStreamSynchronize(stream_);
+  KD_CUDA_TRY(status, "rendering");
+
+  RenderStats stats;
+  for (const Launch& launch : launches) stats.add_stage(launch.stage, launch.end.seconds_since(launch.start));
+  stats.render_seconds = launches.back().end.seconds_since(launches.front().start);
+  stats.primary_rays = size_t{view.width} * view.height;
+  stats.primary_hits = totals[kHits];
+  stats.shadow_rays = totals[kShadowRays];
+  return stats;
+}
+
+Result<void> CudaRenderer::download_strip(const FrameView& view, Frame& frame) {
+  const char* action = "copying the film back";
+  const size_t pixels = size_t{view.width} * view.height, first = size_t{view.width} * view.first_row;
+  float* const colour = frame.film.colour.data() + 4 * first;
+  KD_CUDA_TRY(download(colour, &view.colour->colour.x, 4 * pixels, stream_), action);
+  if (view.preview) KD_CUDA_TRY(download(frame.preview.data() + 3 * first, view.preview, 3 * pixels, stream_), action);
+  for (size_t i = 0; i < frame.film.aovs.size(); ++i) {
+    image::AovBuffer& buffer = frame.film.aovs[i];
+    const auto components = static_cast<size_t>(image::aov_row(buffer.aov).components);
+    const uint32_t* const words = buffers_.targets()[i].words;
+    KD_CUDA_TRY(download(buffer.words.data() + components * first, words, components * pixels, stream_), action);
+  }
+  KD_CUDA_TRY(cudaStreamSynchronize(stream_), action);
+  return {};
+}
+
+Result<RenderStats> CudaRenderer::render(Strip strip, Frame& frame, const Progress& progress) {
+  KD_CUDA_TRY(cudaSetDevice(index_), "choosing the device");
+  FrameView view = strip_view(scene_, settings_, strip);
+  const SceneView counts = view.scene;
+  view.scene = device_scene_.view();
+  view.scene.instance_count = counts.instance_count;
+  view.scene.ambient = counts.ambient;
+  view.scene.background = counts.background;
+  buffers_.set(view);
+  auto stats = run_stages(view);
+  if (!stats) return stats;
+  if (!keep_going(progress, 1)) return Error{ErrorClass::interrupted, "", "interrupted"};
+  Timer timer;
+  if (auto downloaded = download_strip(view, frame); !downloaded) return downloaded.error();
+  stats->download_seconds = timer.seconds();
+  return stats;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Renderer>> cuda_open(const LoadedScene& scene, const RenderSettings& settings, int index) {
+  auto renderer = std::make_unique<CudaRenderer>(scene, settings, index);
+  if (auto opened = renderer->open(); !opened) return opened.error();
+  return std::unique_ptr<Renderer>(std::move(renderer));
+}
+
+}  // namespace kd::render

@@ -1,0 +1,77 @@
+#include "render/cuda/device_scene.h"
+
+namespace kd::render {
+
+namespace {
+
+/// A section to its piece, whose pointer the views hold as one to constants.
+template <class T>
+cudaError_t fill_piece(const T* piece, std::span<const T> section, cudaStream_t stream) {
+  return upload(const_cast<T*>(piece), section, stream);
+}
+
+}  // namespace
+
+void DeviceScene::lay_out(const LoadedScene& scene) {
+  memory_.section("objects");
+  objects_.assign(scene.objects.size(), {});
+  object_views_.assign(scene.objects.size(), {});
+  for (size_t i = 0; i < scene.objects.size(); ++i) {
+    if (!scene.objects[i].file) continue;
+    const nkd::ObjectFile& file = *scene.objects[i].file;
+    const nkd::Attributes& a = scene.objects[i].attributes;
+    objects_[i] = object_pieces(memory_, file.geometry());
+    object_views_[i] = {{objects_[i].nodes, objects_[i].references, objects_[i].triangles, file.summary().lattice.bits},
+                        file.summary().lattice.step(),
+                        memory_.piece<uint32_t>(a.source_primitives.size()),
+                        memory_.piece<Vec3f>(a.normals.size()),
+                        memory_.piece<uint32_t>(a.normal_indices.size()),
+                        memory_.piece<Material>(a.materials.size()),
+                        memory_.piece<uint16_t>(a.material_ids.size())};
+  }
+  view_.objects = memory_.piece<ShadedObjectView>(scene.objects.size());
+  memory_.section("instances");
+  view_.instances = memory_.piece<InstanceView>(scene.instances.size());
+  view_.overrides = memory_.piece<Material>(scene.overrides.size());
+  memory_.section("hierarchy");
+  view_.hierarchy = memory_.piece<HierarchyNode>(scene.hierarchy.size());
+  memory_.section("lights");
+  view_.lights = memory_.piece<LightView>(scene.lights.size());
+}
+
+Result<void> DeviceScene::create(const LoadedScene& scene, cudaStream_t stream) {
+  lay_out(scene);
+  if (auto allocated = memory_.allocate(); !allocated) return allocated;
+  lay_out(scene);
+  return fill(scene, stream);
+}
+
+Result<void> DeviceScene::fill(const LoadedScene& scene, cudaStream_t stream) {
+  Staging staging;
+  for (const LoadedObject& object : scene.objects) {
+    if (object.file) staging.include(object.file->geometry());
+  }
+  if (auto allocated = staging.allocate(); !allocated) return allocated;
+  const char* action = "uploading the scene";
+  for (size_t i = 0; i < scene.objects.size(); ++i) {
+    if (!scene.objects[i].file) continue;
+    const nkd::Attributes& a = scene.objects[i].attributes;
+    const ShadedObjectView& v = object_views_[i];
+    KD_CUDA_TRY(fill_object(objects_[i], staging, scene.objects[i].file->geometry(), stream), action);
+    KD_CUDA_TRY(fill_piece(v.source_primitives, a.source_primitives, stream), action);
+    KD_CUDA_TRY(fill_piece(v.normals, a.normals, stream), action);
+    KD_CUDA_TRY(fill_piece(v.normal_indices, a.normal_indices, stream), action);
+    KD_CUDA_TRY(fill_piece(v.materials, a.materials, stream), action);
+    KD_CUDA_TRY(fill_piece(v.material_ids, a.material_ids, stream), action);
+  }
+  const std::vector<InstanceView> instances = instance_views(scene);
+  KD_CUDA_TRY(fill_piece(view_.objects, std::span<const ShadedObjectView>(object_views_), stream), action);
+  KD_CUDA_TRY(fill_piece(view_.instances, std::span<const InstanceView>(instances), stream), action);
+  KD_CUDA_TRY(fill_piece(view_.overrides, std::span<const Material>(scene.overrides), stream), action);
+  KD_CUDA_TRY(fill_piece(view_.hierarchy, std::span<const HierarchyNode>(scene.hierarchy), stream), action);
+  KD_CUDA_TRY(fill_piece(view_.lights, std::span<const LightView>(scene.lights), stream), action);
+  KD_CUDA_TRY(cudaStreamSynchronize(stream), action);
+  return {};
+}
+
+}  // namespace kd::render

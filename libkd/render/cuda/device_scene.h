@@ -1,0 +1,28 @@
+// A scene on a device: objects, instances, their hierarchy, lights. One allocation.
+#pragma once
+
+#include "render/cuda/device_object.h"
+#include "render/load.h"
+#include "render/view.h"
+
+namespace kd::render {
+
+class DeviceScene {
+ public:
+  /// Uploads, and waits until all is there.
+  Result<void> create(const LoadedScene& scene, cudaStream_t stream);
+  /// Its pointers; counts and colours are the caller's.
+  const SceneView& view() const { return view_; }
+  size_t bytes() const { return memory_.bytes(); }
+
+ private:
+  void lay_out(const LoadedScene& scene);
+  Result<void> fill(const LoadedScene& scene, cudaStream_t stream);
+
+  DeviceMemory memory_;
+  SceneView view_;
+  std::vector<DeviceObject> objects_;
+  std::vector<ShadedObjectView> object_views_;
+};
+
+}  // namespace kd::render

@@ -1,0 +1,43 @@
+// A stage as a kernel: a thread a pixel.
+#pragma once
+
+#include "render/cuda/cuda.h"
+#include "render/pipeline.h"
+
+namespace kd::render {
+
+/// Pixel of a thread: a warp covers a tile of 8 x 4 pixels, so that its rays stay together.
+__device__ inline uint32_t tiled_pixel(uint32_t thread, uint32_t width, uint32_t height) {
+  const uint32_t tiles_across = (width + 7) / 8;
+  const uint32_t tile = thread / 32, lane = thread % 32;
+  const uint32_t x = tile % tiles_across * 8 + lane % 8, y = tile / tiles_across * 4 + lane / 8;
+  return x < width && y < height ? y * width + x : kNone;
+}
+
+/// The same for a stage; those that trace through a hierarchy take what they need.
+template <class Stage>
+constexpr unsigned kStageBlocks = 1;
+template <>
+constexpr unsigned kStageBlocks<ObjectIntersection<OnlyInstance>> = kTraceBlocks;
+template <>
+constexpr unsigned kStageBlocks<Lighting<OnlyInstance>> = kTraceBlocks;
+
+template <class Stage>
+__global__ void __launch_bounds__(kBlock, kStageBlocks<Stage>) stage_kernel(Stage stage, unsigned long long* total) {
+  const uint32_t pixel = tiled_pixel(blockIdx.x * blockDim.x + threadIdx.x, stage.frame.width, stage.frame.height);
+  const bool counted = pixel != kNone && stage(pixel) != 0;
+  if constexpr (kCounter<Stage> != kCounters) {
+    const unsigned lanes = __ballot_sync(~0u, counted);
+    if (threadIdx.x % 32 == 0 && lanes != 0) atomicAdd(total, static_cast<unsigned long long>(__popc(lanes)));
+  }
+}
+
+/// Runs stage(pixel) for every pixel of its strip. `total` is added to if the stage counts something.
+template <class Stage>
+cudaError_t launch_stage(const Stage& stage, unsigned long long* total, cudaStream_t stream) {
+  const size_t tiles = size_t{(stage.frame.width + 7) / 8} * ((stage.frame.height + 3) / 4);
+  stage_kernel<<<blocks_for(tiles * 32), kBlock, 0, stream>>>(stage, total);
+  return cudaGetLastError();
+}
+
+}  // namespace kd::render

@@ -1,0 +1,51 @@
+#include "render/strip.h"
+
+namespace kd::render {
+
+FrameView strip_view(const LoadedScene& scene, const RenderSettings& settings, Strip strip) {
+  FrameView view;
+  view.scene.instance_count = static_cast<uint32_t>(scene.instances.size());
+  view.scene.ambient = scene.ambient;
+  view.scene.background = scene.background;
+  view.camera = scene.camera;
+  view.width = scene.film.width;
+  view.height = strip.rows;
+  view.first_row = strip.first_row;
+  view.inverse_gamma = 1 / settings.gamma;
+  return view;
+}
+
+PipelinePlan pipeline_plan(const LoadedScene& scene, const RenderSettings& settings, std::span<const AovTarget> aovs) {
+  return {static_cast<uint32_t>(scene.lights.size()), aovs, settings.preview, settings.gamma_on_film};
+}
+
+size_t bytes_a_pixel(const RenderSettings& settings) {
+  size_t bytes = sizeof(SurfaceHit) + sizeof(Pixel) + (settings.preview ? 3 : 0);
+  for (image::Aov aov : settings.aovs) bytes += static_cast<size_t>(image::aov_row(aov).components) * sizeof(uint32_t);
+  return bytes;
+}
+
+uint64_t object_bytes(const LoadedObject& object) {
+  if (!object.file) return 0;
+  const nkd::Geometry& g = object.file->geometry();
+  const nkd::Attributes& a = object.attributes;
+  return g.nodes.size_bytes() + g.references.size_bytes() + g.triangle_count() * sizeof(TriangleVertices) +
+         a.source_primitives.size_bytes() + a.normals.size_bytes() + a.normal_indices.size_bytes() +
+         a.materials.size_bytes() + a.material_ids.size_bytes();
+}
+
+Frame blank_frame(const scene::FilmSize& film, const RenderSettings& settings) {
+  const size_t pixels = size_t{film.width} * film.height;
+  Frame frame;
+  frame.film.width = film.width;
+  frame.film.height = film.height;
+  frame.film.colour.resize(4 * pixels);
+  if (settings.preview) frame.preview.resize(3 * pixels);
+  for (image::Aov aov : settings.aovs) {
+    const auto components = static_cast<size_t>(image::aov_row(aov).components);
+    frame.film.aovs.push_back({aov, std::vector<uint32_t>(components * pixels)});
+  }
+  return frame;
+}
+
+}  // namespace kd::render
