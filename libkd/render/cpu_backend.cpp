@@ -117,7 +117,7 @@ Result<RenderStats> CpuRenderer::render(Strip strip, Frame& frame, const Progres
   run_pipeline(view, plan, launch, launch);
   if (shared.cancelled()) return Error{ErrorClass::interrupted, "", "interrupted"};
   stats.render_seconds = whole.seconds();
-  stats.primary_rays = pixels;
+  stats.primary_rays = pixels * plan.primary_rays();
   stats.primary_hits = totals[kHits];
   stats.shadow_rays = totals[kShadowRays];
   return stats;

@@ -15,8 +15,11 @@
 
 namespace kd::render {
 
+constexpr uint32_t kMaxSamples = 65536;
+
 struct RenderSettings {
   std::vector<image::Aov> aovs;
+  uint32_t samples = 1;  // a pixel, from 1 to kMaxSamples
   bool preview = false;
   double gamma = 2.2;  // > 0; of the preview, and of the film if gamma_on_film
   bool gamma_on_film = false;

@@ -5,6 +5,7 @@
 
 #include "render/stages/ambient.h"
 #include "render/stages/aov.h"
+#include "render/stages/average.h"
 #include "render/stages/colour.h"
 #include "render/stages/gamma.h"
 #include "render/stages/object_intersection.h"
@@ -20,12 +21,20 @@ struct AovTarget {
 
 struct PipelinePlan {
   uint32_t light_count = 0;  // lights that are black are not in the scene view
+  uint32_t samples = 1;      // a pixel
   std::span<const AovTarget> aovs;
   bool gamma_on_preview = false;
   bool gamma_on_film = false;
 
+  /// AOVs are of the pixel's centre, which is none of several samples.
+  bool centres_apart() const { return samples > 1 && !aovs.empty(); }
+  /// How many rays a pixel sends from the camera.
+  uint32_t primary_rays() const { return samples + centres_apart(); }
   /// How many launches there are if some ray hits something.
-  size_t launches() const { return 1 + max_of(light_count, 1u) + aovs.size() + gamma_on_preview + gamma_on_film; }
+  size_t launches() const {
+    return samples * (1 + max_of(light_count, 1u)) + (samples > 1) + centres_apart() + aovs.size() + gamma_on_preview +
+           gamma_on_film;
+  }
 };
 
 /// What a stage's return values are added up in, where they tell something.
@@ -38,25 +47,35 @@ template <class Instances>
 constexpr Counter kCounter<Lighting<Instances>> = kShadowRays;
 
 /// Launches the stages that have work, in order. `launch(stage)` runs stage(pixel) for every pixel and may return
-/// before it is done; the next stage starts after it. `launch_and_count(stage)` waits, and returns the sum of what the
-/// calls returned: where no ray hits anything, nothing follows that reads a surface.
+/// before it is done; the next stage starts after it. `launch_and_count(stage)` waits, and returns the sum of what such
+/// stages returned so far: until a ray hits something, nothing follows that reads a surface.
 template <class Launch, class LaunchAndCount>
 void run_pipeline(const FrameView& frame, const PipelinePlan& plan, Launch&& launch,
                   LaunchAndCount&& launch_and_count) {
+  const auto write_aovs = [&](const FrameView& centres) {
+    for (const AovTarget& target : plan.aovs) launch(WriteAov{centres, target.aov, target.words});
+  };
   const auto traced_stages = [&]<class Instances>(Instances) {
-    // Ray generation, intersection, and reduction hit by hit.
-    const uint64_t hits = launch_and_count(ObjectIntersection<Instances>{frame});
-    if (hits == 0 || plan.light_count == 0) launch(Ambient{frame});
-    for (uint32_t light = 0; light < plan.light_count && hits > 0; ++light) {
-      launch(Lighting<Instances>{frame, light});
+    if (plan.centres_apart()) {
+      launch_and_count(ObjectIntersection<Instances>{frame});
+      write_aovs(frame);
     }
+    FrameView at = frame;
+    at.samples = plan.samples;
+    for (at.sample = 0; at.sample < plan.samples; ++at.sample) {
+      // Ray generation, intersection, and reduction hit by hit.
+      const uint64_t hits = launch_and_count(ObjectIntersection<Instances>{at});
+      if (hits == 0 || plan.light_count == 0) launch(Ambient{at});
+      for (uint32_t light = 0; light < plan.light_count && hits > 0; ++light) launch(Lighting<Instances>{at, light});
+    }
+    if (plan.samples > 1) launch(Average{at});
   };
   if (frame.scene.instance_count == 1) {
     traced_stages(OnlyInstance{});
   } else {
     traced_stages(ThroughHierarchy{});
   }
-  for (const AovTarget& target : plan.aovs) launch(WriteAov{frame, target.aov, target.words});
+  if (!plan.centres_apart()) write_aovs(frame);
   if (plan.gamma_on_preview) launch(GammaPreview{frame});
   if (plan.gamma_on_film) launch(GammaFilm{frame});
 }

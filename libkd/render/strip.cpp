@@ -16,7 +16,7 @@ FrameView strip_view(const LoadedScene& scene, const RenderSettings& settings, S
 }
 
 PipelinePlan pipeline_plan(const LoadedScene& scene, const RenderSettings& settings, std::span<const AovTarget> aovs) {
-  return {static_cast<uint32_t>(scene.lights.size()), aovs, settings.preview, settings.gamma_on_film};
+  return {static_cast<uint32_t>(scene.lights.size()), settings.samples, aovs, settings.preview, settings.gamma_on_film};
 }
 
 size_t bytes_a_pixel(const RenderSettings& settings) {

@@ -21,6 +21,7 @@ constexpr const char* kKdrender = "kdrender";
 struct Options {
   std::string scene, output, preview, stats, aovs;
   std::string device = "auto";
+  uint32_t samples = 1;
   double gamma = 2.2;
   bool gamma_on_exr = false;
   unsigned threads = 0;
@@ -37,6 +38,9 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("--preview", o.preview, "Write an 8-bit PNG too, through the gamma stage");
   app.add_option("--device", o.device, "auto, cpu, cuda, cuda:N, cuda:all, or a list of these")->capture_default_str();
   app.add_option("--aov", o.aovs, aov_help);
+  app.add_option("--spp", o.samples, "Samples a pixel, under a tent filter; 1: its centre")
+      ->check(whole_number(1, render::kMaxSamples))
+      ->capture_default_str();
   app.add_option("--gamma", o.gamma, "Gamma of the preview")->check(number(0.1, 10))->capture_default_str();
   app.add_flag("--gamma-exr", o.gamma_on_exr, "Apply the gamma to the EXR as well; its header then says so");
   app.add_option("--stats", o.stats, "Write a JSON report to this file, or to stdout (-)");
@@ -76,7 +80,7 @@ Result<void> render_scene(const Options& o) {
   if (auto usable = check_outputs({o.output, o.preview, o.stats}, inputs_of(o, *scene)); !usable) return usable;
   catch_interrupts();
   const Progress progress = progress_bar("rendering", o.quiet);
-  const render::RenderSettings settings{*aovs, !o.preview.empty(), o.gamma, o.gamma_on_exr};
+  const render::RenderSettings settings{*aovs, o.samples, !o.preview.empty(), o.gamma, o.gamma_on_exr};
   auto loaded = render::load_scene(*scene, settings);
   if (!loaded) return loaded.error();
   times.load = timer.lap();

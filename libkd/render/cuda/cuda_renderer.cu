@@ -80,7 +80,7 @@ class CudaRenderer final : public Renderer {
   Result<RenderStats> render(Strip strip, Frame& frame, const Progress& progress) override;
 
  private:
-  Result<RenderStats> run_stages(const FrameView& view);
+  Result<RenderStats> run_stages(const FrameView& view, const Progress& progress);
   Result<void> download_strip(const FrameView& view, Frame& frame);
 
   const LoadedScene& scene_;
@@ -113,11 +113,14 @@ struct Launch {
   Event start, end;
 };
 
-Result<RenderStats> CudaRenderer::run_stages(const FrameView& view) {
+Result<RenderStats> CudaRenderer::run_stages(const FrameView& view, const Progress& progress) {
+  const PipelinePlan plan = pipeline_plan(scene_, settings_, buffers_.targets());
   unsigned long long* const device_totals = buffers_.totals();
   std::deque<Launch> launches;  // whose elements stay where they are
   cudaError_t status = cudaMemsetAsync(device_totals, 0, kCounters * sizeof(*device_totals), stream_);
+  bool cancelled = false;
   const auto launch = [&](const auto& stage) {
+    if (cancelled) return;
     using Stage = std::decay_t<decltype(stage)>;
     Launch& record = launches.emplace_back(Stage::kName);
     record.start.record(stream_);
@@ -131,18 +134,21 @@ Result<RenderStats> CudaRenderer::run_stages(const FrameView& view) {
     const cudaError_t copied = download(&count, device_totals + kCounter<std::decay_t<decltype(stage)>>, 1, stream_);
     const cudaError_t waited = copied == cudaSuccess ? cudaStreamSynchronize(stream_) : copied;
     if (status == cudaSuccess) status = waited;
+    const double share = static_cast<double>(launches.size()) / static_cast<double>(plan.launches());
+    cancelled = cancelled || !keep_going(progress, min_of(share, 1.0));
     return count;
   };
-  run_pipeline(view, pipeline_plan(scene_, settings_, buffers_.targets()), launch, launch_and_count);
+  run_pipeline(view, plan, launch, launch_and_count);
   unsigned long long totals[kCounters] = {};
   if (status == cudaSuccess) status = download(totals, device_totals, kCounters, stream_);
   if (status == cudaSuccess) status = cudaStreamSynchronize(stream_);
   KD_CUDA_TRY(status, "rendering");
+  if (cancelled) return Error{ErrorClass::interrupted, "", "interrupted"};
 
   RenderStats stats;
   for (const Launch& launch : launches) stats.add_stage(launch.stage, launch.end.seconds_since(launch.start));
   stats.render_seconds = launches.back().end.seconds_since(launches.front().start);
-  stats.primary_rays = size_t{view.width} * view.height;
+  stats.primary_rays = size_t{view.width} * view.height * plan.primary_rays();
   stats.primary_hits = totals[kHits];
   stats.shadow_rays = totals[kShadowRays];
   return stats;
@@ -173,9 +179,8 @@ Result<RenderStats> CudaRenderer::render(Strip strip, Frame& frame, const Progre
   view.scene.ambient = counts.ambient;
   view.scene.background = counts.background;
   buffers_.set(view);
-  auto stats = run_stages(view);
+  auto stats = run_stages(view, progress);
   if (!stats) return stats;
-  if (!keep_going(progress, 1)) return Error{ErrorClass::interrupted, "", "interrupted"};
   Timer timer;
   if (auto downloaded = download_strip(view, frame); !downloaded) return downloaded.error();
   stats->download_seconds = timer.seconds();

@@ -49,7 +49,7 @@ struct Lighting {
       }
     }
     if (first || lit) {
-      Pixel out = first ? ambient_of(frame.scene, hit) : frame.colour[pixel];
+      Pixel out = first ? begin_sample(frame, pixel, hit) : frame.colour[pixel];
       if (lit) out.colour = out.colour + added;
       frame.colour[pixel] = out;
     }

@@ -1,10 +1,11 @@
-// Ray generation: one primary ray a pixel, through its centre.
+// Ray generation: a sample's primary ray; of a pixel's only sample, through its centre.
 //
 // A function, not a launch of its own: the stages that want a pixel's ray compute it again, which takes less time than
 // to write and read 24 bytes a pixel.
 #pragma once
 
 #include "core/ray.h"
+#include "core/sampling.h"
 #include "render/view.h"
 
 namespace kd::render {
@@ -16,7 +17,9 @@ constexpr double kFar = 1e300;
 KD_HD KD_INLINE Vec3d primary_direction(const FrameView& frame, uint32_t pixel) {
   const CameraView& c = frame.camera;
   const uint32_t column = pixel % frame.width, row = frame.first_row + pixel / frame.width;
-  return normalised(c.corner + c.right * static_cast<double>(column) + c.down * static_cast<double>(row));
+  SampleOffset offset{0, 0};
+  if (frame.samples > 1) offset = sample_offset(column, row, frame.sample);
+  return normalised(c.corner + c.right * (column + offset.x) + c.down * (row + offset.y));
 }
 
 KD_HD KD_INLINE Ray primary_ray(const FrameView& frame, uint32_t pixel) {
