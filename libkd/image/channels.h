@@ -12,7 +12,7 @@
 
 namespace kd::image {
 
-enum class Aov : uint8_t { depth, normal, position, object, instance, primitive, bary };
+enum class Aov : uint8_t { depth, normal, position, object, instance, primitive, bary, visits };
 
 enum class ChannelType : uint8_t { float32, uint32 };
 
@@ -27,7 +27,7 @@ struct AovRow {
 };
 
 /// In the order of Aov.
-inline constexpr std::array<AovRow, 7> kAovRows{{
+inline constexpr std::array<AovRow, 8> kAovRows{{
     {Aov::depth, "depth", ChannelType::float32, 1, {"Z"}, "distance from the viewer along the ray, scene units", "inf"},
     {Aov::normal,
      "normal",
@@ -41,6 +41,13 @@ inline constexpr std::array<AovRow, 7> kAovRows{{
     {Aov::instance, "instance", ChannelType::uint32, 1, {"instanceId"}, "index of the instance", "0xffffffff"},
     {Aov::primitive, "primitive", ChannelType::uint32, 1, {"primitiveId"}, "number of the triangle", "0xffffffff"},
     {Aov::bary, "bary", ChannelType::float32, 2, {"bary.u", "bary.v"}, "barycentric coordinates in the triangle", "0"},
+    {Aov::visits,
+     "visits",
+     ChannelType::uint32,
+     2,
+     {"visits.nodes", "visits.triangles"},
+     "inner nodes visited and triangles tested for the ray",
+     "the same"},
 }};
 
 constexpr const AovRow& aov_row(Aov aov) { return kAovRows[static_cast<size_t>(aov)]; }

@@ -36,9 +36,9 @@ bool buffers_fit(const Film& film) {
 void add_channel(Imf::Header& header, Imf::FrameBuffer& frame, std::string_view name, Imf::PixelType type,
                  const void* first, int components, uint32_t width) {
   const size_t pixel = sizeof(float) * static_cast<size_t>(components);
+  const Imath::V2i origin = header.dataWindow().min;
   header.channels().insert(std::string(name), Imf::Channel(type));
-  frame.insert(std::string(name),
-               Imf::Slice(type, const_cast<char*>(static_cast<const char*>(first)), pixel, pixel * width));
+  frame.insert(std::string(name), Imf::Slice::Make(type, first, origin, width, 0, pixel, pixel * width));
 }
 
 void add_channels(Imf::Header& header, Imf::FrameBuffer& frame, const Film& film) {
@@ -63,7 +63,13 @@ void add_attributes(Imf::Header& file, const ExrHeader& header) {
 
 /// Throws what OpenEXR throws. False: the file system would not take it all, errno says why.
 bool write_film(const std::string& path, const Film& film, const ExrHeader& header) {
-  Imf::Header file_header(static_cast<int>(film.width), static_cast<int>(film.height));
+  const auto box = [](uint32_t column, uint32_t row, uint32_t width, uint32_t height) {
+    const auto x = static_cast<int>(column), y = static_cast<int>(row);
+    return Imath::Box2i({x, y}, {x + static_cast<int>(width) - 1, y + static_cast<int>(height) - 1});
+  };
+  const Imath::Box2i data = box(film.column, film.row, film.width, film.height);
+  const Imath::Box2i display = film.picture_width > 0 ? box(0, 0, film.picture_width, film.picture_height) : data;
+  Imf::Header file_header(display, data);
   file_header.compression() = Imf::ZIP_COMPRESSION;
   Imf::FrameBuffer frame;
   add_channels(file_header, frame, film);

@@ -66,10 +66,10 @@ class CpuRenderer final : public Renderer {
     for (const LoadedObject& object : scene.objects) holding_.object_bytes += object_bytes(object);
     holding_.scene_bytes = instances_.size() * sizeof(InstanceView) + scene.hierarchy.size() * sizeof(HierarchyNode) +
                            scene.lights.size() * sizeof(LightView);
-    holding_.strip_bytes = size_t{scene.film.width} * scene.film.height * bytes_a_pixel(settings);
+    holding_.strip_bytes = size_t{scene.window.width} * scene.window.height * bytes_a_pixel(settings);
   }
 
-  uint32_t max_rows() const override { return scene_.film.height; }
+  uint32_t max_rows() const override { return scene_.window.height; }
   const Holding& holding() const override { return holding_; }
   Result<RenderStats> render(Strip strip, Frame& frame, const Progress& progress) override;
 
@@ -84,7 +84,7 @@ class CpuRenderer final : public Renderer {
 };
 
 Result<RenderStats> CpuRenderer::render(Strip strip, Frame& frame, const Progress& progress) {
-  const size_t pixels = size_t{scene_.film.width} * strip.rows, first = size_t{scene_.film.width} * strip.first_row;
+  const size_t width = scene_.window.width, pixels = width * strip.rows, first = width * strip.first_row;
   hits_.resize(std::max(hits_.size(), pixels));
   std::vector<AovTarget> targets;
   for (image::AovBuffer& buffer : frame.film.aovs) {

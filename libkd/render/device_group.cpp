@@ -127,8 +127,8 @@ Result<Frame> DeviceGroup::render(const Progress& progress) {
 }
 
 Result<Frame> DeviceGroup::render_once(const Progress& progress) {
-  Frame frame = blank_frame(scene_->film, settings_);
-  Rows rows(scene_->film.height, renderers_.size(), progress);
+  Frame frame = blank_frame(*scene_, settings_);
+  Rows rows(scene_->window.height, renderers_.size(), progress);
   std::vector<double> seconds(renderers_.size());
   std::vector<std::thread> others;  // the first device works on this thread
   for (size_t i = 1; i < renderers_.size(); ++i) {

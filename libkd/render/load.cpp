@@ -135,6 +135,7 @@ Result<LoadedScene> load_scene(const scene::Scene& scene, const RenderSettings& 
   load_lights(scene, loaded);
   loaded.camera = camera_view(scene.camera, scene.film);
   loaded.film = scene.film;
+  loaded.window = settings.crop.value_or(image::Window{0, 0, scene.film.width, scene.film.height});
   loaded.ambient = scene.ambient;
   loaded.background = scene.background;
   loaded.skipped.aov_buffers = static_cast<uint32_t>(image::kAovRows.size() - settings.aovs.size());

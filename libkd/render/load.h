@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "image/channels.h"
+#include "image/film.h"
 #include "nkd/object_file.h"
 #include "render/view.h"
 #include "scene/instances.h"
@@ -23,6 +24,7 @@ struct RenderSettings {
   bool preview = false;
   double gamma = 2.2;  // > 0; of the preview, and of the film if gamma_on_film
   bool gamma_on_film = false;
+  std::optional<image::Window> crop;  // of the film, and the only part that is rendered; not empty, within the film
 };
 
 /// One object's sections that this render reads; the others are empty and stay on disk.
@@ -49,6 +51,7 @@ struct LoadedScene {
   std::vector<uint32_t> override_of;  // per instance: index into overrides, or kNone
   CameraView camera;
   scene::FilmSize film;
+  image::Window window;  // of the film: what is rendered
   Vec3f ambient;
   Vec3f background;
   Skipped skipped;

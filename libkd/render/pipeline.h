@@ -7,6 +7,7 @@
 #include "render/stages/aov.h"
 #include "render/stages/average.h"
 #include "render/stages/colour.h"
+#include "render/stages/count_visits.h"
 #include "render/stages/gamma.h"
 #include "render/stages/object_intersection.h"
 #include "render/stages/ray_generation.h"
@@ -52,13 +53,19 @@ constexpr Counter kCounter<Lighting<Instances>> = kShadowRays;
 template <class Launch, class LaunchAndCount>
 void run_pipeline(const FrameView& frame, const PipelinePlan& plan, Launch&& launch,
                   LaunchAndCount&& launch_and_count) {
-  const auto write_aovs = [&](const FrameView& centres) {
-    for (const AovTarget& target : plan.aovs) launch(WriteAov{centres, target.aov, target.words});
-  };
   const auto traced_stages = [&]<class Instances>(Instances) {
+    const auto write_aovs = [&] {
+      for (const AovTarget& target : plan.aovs) {
+        if (target.aov == image::Aov::visits) {
+          launch(CountVisits<Instances>{frame, target.words});
+        } else {
+          launch(WriteAov{frame, target.aov, target.words});
+        }
+      }
+    };
     if (plan.centres_apart()) {
       launch_and_count(ObjectIntersection<Instances>{frame});
-      write_aovs(frame);
+      write_aovs();
     }
     FrameView at = frame;
     at.samples = plan.samples;
@@ -69,13 +76,13 @@ void run_pipeline(const FrameView& frame, const PipelinePlan& plan, Launch&& lau
       for (uint32_t light = 0; light < plan.light_count && hits > 0; ++light) launch(Lighting<Instances>{at, light});
     }
     if (plan.samples > 1) launch(Average{at});
+    if (!plan.centres_apart()) write_aovs();
   };
   if (frame.scene.instance_count == 1) {
     traced_stages(OnlyInstance{});
   } else {
     traced_stages(ThroughHierarchy{});
   }
-  if (!plan.centres_apart()) write_aovs(frame);
   if (plan.gamma_on_preview) launch(GammaPreview{frame});
   if (plan.gamma_on_film) launch(GammaFilm{frame});
 }

@@ -46,7 +46,7 @@ struct Frame {
   RenderStats stats;
 };
 
-/// Rows of a film that are rendered together.
+/// Rows of a frame, counted from its window's first, that are rendered together.
 struct Strip {
   uint32_t first_row = 0;
   uint32_t rows = 0;
@@ -58,8 +58,9 @@ class Renderer {
   /// The most rows a strip may have, at least 1.
   virtual uint32_t max_rows() const = 0;
   virtual const Holding& holding() const = 0;
-  /// Renders a strip into its rows of `frame`, whose buffers have the film's size. Several renderers may do so at once,
-  /// each its own strip: nothing else of `frame` is touched, its stats included. `progress` hears the strip's share.
+  /// Renders a strip into its rows of `frame`, whose buffers have the window's size. Several renderers may do so at
+  /// once, each its own strip: nothing else of `frame` is touched, its stats included. `progress` hears the strip's
+  /// share.
   virtual Result<RenderStats> render(Strip strip, Frame& frame, const Progress& progress) = 0;
 };
 

@@ -8,9 +8,10 @@ FrameView strip_view(const LoadedScene& scene, const RenderSettings& settings, S
   view.scene.ambient = scene.ambient;
   view.scene.background = scene.background;
   view.camera = scene.camera;
-  view.width = scene.film.width;
+  view.width = scene.window.width;
   view.height = strip.rows;
-  view.first_row = strip.first_row;
+  view.first_column = scene.window.column;
+  view.first_row = scene.window.row + strip.first_row;
   view.inverse_gamma = 1 / settings.gamma;
   return view;
 }
@@ -34,11 +35,11 @@ uint64_t object_bytes(const LoadedObject& object) {
          a.materials.size_bytes() + a.material_ids.size_bytes();
 }
 
-Frame blank_frame(const scene::FilmSize& film, const RenderSettings& settings) {
-  const size_t pixels = size_t{film.width} * film.height;
+Frame blank_frame(const LoadedScene& scene, const RenderSettings& settings) {
+  const image::Window& window = scene.window;
+  const size_t pixels = size_t{window.width} * window.height;
   Frame frame;
-  frame.film.width = film.width;
-  frame.film.height = film.height;
+  frame.film = {window.width, window.height, window.column, window.row, scene.film.width, scene.film.height, {}, {}};
   frame.film.colour.resize(4 * pixels);
   if (settings.preview) frame.preview.resize(3 * pixels);
   for (image::Aov aov : settings.aovs) {

@@ -18,6 +18,6 @@ size_t bytes_a_pixel(const RenderSettings& settings);
 uint64_t object_bytes(const LoadedObject& object);
 
 /// A frame with buffers for all that is asked for.
-Frame blank_frame(const scene::FilmSize& film, const RenderSettings& settings);
+Frame blank_frame(const LoadedScene& scene, const RenderSettings& settings);
 
 }  // namespace kd::render

@@ -76,9 +76,10 @@ struct FrameView {
   CameraView camera;
   uint32_t width = 0;  // of the strip, and so is the height
   uint32_t height = 0;
-  uint32_t first_row = 0;  // the film's row that is the strip's first
-  uint32_t samples = 1;    // a pixel; one lies at its centre
-  uint32_t sample = 0;     // the one that the stages are at
+  uint32_t first_column = 0;  // where in the film the strip's first pixel lies
+  uint32_t first_row = 0;
+  uint32_t samples = 1;  // a pixel; one lies at its centre
+  uint32_t sample = 0;   // the one that the stages are at
   SurfaceHit* hits = nullptr;
   Pixel* colour = nullptr;
   uint8_t* preview = nullptr;  // RGB

@@ -18,7 +18,8 @@ enum class ErrorClass {
   output = 7,       // an output that cannot be written
   device = 8,       // a device that is not there, or failed
   resource = 9,     // more memory, or a larger file, than can be had
-  interrupted = 10  // cancelled from outside
+  interrupted = 10,  // cancelled from outside
+  differs = 11       // a picture that is further from its reference than it may be
 };
 
 struct Error {

@@ -27,7 +27,7 @@ using nlohmann::json;
 namespace {
 
 constexpr const char* kTool = "kdrender";
-constexpr const char* kAllAovs = "depth,normal,position,object,instance,primitive,bary";
+constexpr const char* kAllAovs = "depth,normal,position,object,instance,primitive,bary,visits";
 
 struct Exr {
   int width = 0, height = 0;
@@ -94,9 +94,9 @@ TEST_SUITE("kdrender") {
     CHECK(report["skipped"]["aov_buffers"] == 0);
     CHECK(ran(report, "shadow, colour"));
 
-    const std::set<std::string> channels{"R",          "G",           "B",      "A",     "Z",   "N.X",
-                                         "N.Y",        "N.Z",         "P.X",    "P.Y",   "P.Z", "objectId",
-                                         "instanceId", "primitiveId", "bary.u", "bary.v"};
+    const std::set<std::string> channels{
+        "R",   "G",   "B",        "A",          "Z",           "N.X",    "N.Y",    "N.Z",          "P.X",
+        "P.Y", "P.Z", "objectId", "instanceId", "primitiveId", "bary.u", "bary.v", "visits.nodes", "visits.triangles"};
     const Exr exr = read_exr(t.path("o.exr"));
     CHECK(exr.width == 512);
     CHECK(exr.height == 512);
@@ -124,7 +124,7 @@ TEST_SUITE("kdrender") {
     CHECK(read_exr(t.path("o.exr")).channels == std::set<std::string>{"A", "B", "G", "R"});
     const json report = rendered(t, small_spheres(t), {"--aov", "depth"});
     CHECK(read_exr(t.path("o.exr")).channels == std::set<std::string>{"A", "B", "G", "R", "Z"});
-    CHECK(report["skipped"]["aov_buffers"] == 6);
+    CHECK(report["skipped"]["aov_buffers"] == 7);
   }
 
   TEST_CASE("gamma is the preview's, and the EXR's only if asked") {

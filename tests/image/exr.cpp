@@ -28,7 +28,9 @@ namespace {
 
 /// A film with all AOVs; no two words are the same, and NaNs, infinities and all bits set are among them.
 Film make_film(uint32_t width, uint32_t height) {
-  Film film{width, height, {}, {}};
+  Film film;
+  film.width = width;
+  film.height = height;
   const size_t pixels = size_t{width} * height;
   for (size_t i = 0; i < 4 * pixels; ++i) film.colour.push_back(static_cast<float>(i) * 0.37f - 5.0f);
   film.colour[1] = std::numeric_limits<float>::infinity();

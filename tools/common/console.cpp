@@ -44,7 +44,7 @@ std::string version_text() { return "kdtrace " KD_VERSION; }
 
 std::string exit_status_text() {
   return "Exit status: 0 done; 2 usage; 3 input missing or unreadable; 4 bad mesh; 5 bad .nkd; 6 bad scene;\n"
-         "7 output not writable; 8 device not there or failed; 9 out of memory or size; 10 interrupted; 1 a fault of "
+         "7 output not writable; 8 device not there or failed; 9 out of memory or size; 10 interrupted;\n11 differs from its reference; 1 a fault of "
          "our own.";
 }
 

@@ -96,6 +96,12 @@ Json render_json(const std::string& scene_path, const std::string& output, const
   };
 }
 
+void print_contents(const std::string& scene_path, const render::LoadedScene& scene) {
+  fmt::print("{}: sound: {} objects, {} instances, {} triangles as seen, {} lights, {} x {} pixels\n", scene_path,
+             opened_objects(scene), scene.instances.size(), instanced_triangles(scene), scene.lights.size(),
+             scene.film.width, scene.film.height);
+}
+
 void print_render(const std::string& output, const render::DeviceGroup& group, const render::LoadedScene& scene,
                   const render::RenderStats& stats, const RenderTimes& times) {
   const render::Holding holding = group.holding();
@@ -109,7 +115,7 @@ void print_render(const std::string& output, const render::DeviceGroup& group, c
       "the device\n",
       times.load, holding.upload_seconds, stats.render_seconds, stats.download_seconds, times.write,
       static_cast<double>(holding.object_bytes) / (1 << 20));
-  fmt::print("{}: {} x {}\n", output, scene.film.width, scene.film.height);
+  if (!output.empty()) fmt::print("{}: {} x {}\n", output, scene.window.width, scene.window.height);
 }
 
 }  // namespace kd::tools

@@ -18,6 +18,9 @@ Json render_json(const std::string& scene_path, const std::string& output, const
 void print_render(const std::string& output, const render::DeviceGroup& group, const render::LoadedScene& scene,
                   const render::RenderStats& stats, const RenderTimes& times);
 
+/// What --check found.
+void print_contents(const std::string& scene_path, const render::LoadedScene& scene);
+
 /// The group's devices by name.
 std::string described(const std::vector<render::Device>& devices);
 

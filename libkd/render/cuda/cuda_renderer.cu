@@ -57,8 +57,8 @@ void StripBuffers::lay_out(size_t pixels, const RenderSettings& settings) {
 
 Result<void> StripBuffers::create(const LoadedScene& scene, const RenderSettings& settings) {
   constexpr uint32_t kTileRows = 4;  // of a warp's pixels
-  for (rows_ = scene.film.height;; rows_ = (rows_ / 2 + kTileRows - 1) / kTileRows * kTileRows) {
-    const size_t pixels = size_t{scene.film.width} * rows_;
+  for (rows_ = scene.window.height;; rows_ = (rows_ / 2 + kTileRows - 1) / kTileRows * kTileRows) {
+    const size_t pixels = size_t{scene.window.width} * rows_;
     lay_out(pixels, settings);
     const auto allocated = memory_.allocate();
     if (allocated) {
@@ -81,7 +81,7 @@ class CudaRenderer final : public Renderer {
 
  private:
   Result<RenderStats> run_stages(const FrameView& view, const Progress& progress);
-  Result<void> download_strip(const FrameView& view, Frame& frame);
+  Result<void> download_strip(const FrameView& view, Strip strip, Frame& frame);
 
   const LoadedScene& scene_;
   RenderSettings settings_;
@@ -154,9 +154,9 @@ Result<RenderStats> CudaRenderer::run_stages(const FrameView& view, const Progre
   return stats;
 }
 
-Result<void> CudaRenderer::download_strip(const FrameView& view, Frame& frame) {
+Result<void> CudaRenderer::download_strip(const FrameView& view, Strip strip, Frame& frame) {
   const char* action = "copying the film back";
-  const size_t pixels = size_t{view.width} * view.height, first = size_t{view.width} * view.first_row;
+  const size_t pixels = size_t{view.width} * view.height, first = size_t{view.width} * strip.first_row;
   float* const colour = frame.film.colour.data() + 4 * first;
   KD_CUDA_TRY(download(colour, &view.colour->colour.x, 4 * pixels, stream_), action);
   if (view.preview) KD_CUDA_TRY(download(frame.preview.data() + 3 * first, view.preview, 3 * pixels, stream_), action);
@@ -182,7 +182,7 @@ Result<RenderStats> CudaRenderer::render(Strip strip, Frame& frame, const Progre
   auto stats = run_stages(view, progress);
   if (!stats) return stats;
   Timer timer;
-  if (auto downloaded = download_strip(view, frame); !downloaded) return downloaded.error();
+  if (auto downloaded = download_strip(view, strip, frame); !downloaded) return downloaded.error();
   stats->download_seconds = timer.seconds();
   return stats;
 }

@@ -50,6 +50,8 @@ struct WriteAov {
         words[2 * static_cast<uint64_t>(pixel)] = bits(hit.u);
         words[2 * static_cast<uint64_t>(pixel) + 1] = bits(hit.v);
         break;
+      case image::Aov::visits:  // CountVisits
+        break;
     }
     return 0;
   }

@@ -69,9 +69,9 @@ KD_HD KD_INLINE float limit_in_lattice(const LatticeRay& ray, double t_limit) {
 
 }  // namespace detail
 
-/// The nearest hit of a ray in the scene.
-template <class Instances = ThroughHierarchy>
-KD_HD inline SurfaceHit closest_hit(const SceneView& scene, const Ray& ray) {
+/// The nearest hit of a ray in the scene. `counter` hears the steps that it takes within objects.
+template <class Instances, class Counter>
+KD_HD inline SurfaceHit closest_hit(const SceneView& scene, const Ray& ray, Counter& counter) {
   SurfaceHit best;
   double t_limit = ray.t_max;
   Instances::for_each(scene, ray, t_limit, [&](uint32_t index) {
@@ -80,7 +80,6 @@ KD_HD inline SurfaceHit closest_hit(const SceneView& scene, const Ray& ray) {
     const float s_limit = best.instance == kNone ? lattice_ray.s_max : detail::limit_in_lattice(lattice_ray, t_limit);
     if (s_limit < 0) return true;
     const ObjectView& object = scene.objects[scene.instances[index].object].tree;
-    NoCounter counter;
     const uint32_t triangle = traverse<RayMode::closest>(object, lattice_ray, s_limit, kNoTriangle, counter);
     if (triangle == kNoTriangle) return true;
     const TriangleHit hit = ExactTest(lattice_ray).locate(load(object.triangles + triangle));
@@ -89,6 +88,12 @@ KD_HD inline SurfaceHit closest_hit(const SceneView& scene, const Ray& ray) {
     return true;
   });
   return best;
+}
+
+template <class Instances = ThroughHierarchy>
+KD_HD KD_INLINE SurfaceHit closest_hit(const SceneView& scene, const Ray& ray) {
+  NoCounter counter;
+  return closest_hit<Instances>(scene, ray, counter);
 }
 
 /// Whether the ray meets anything but `excluded`.

@@ -16,7 +16,8 @@ constexpr double kFar = 1e300;
 /// Of length 1.
 KD_HD KD_INLINE Vec3d primary_direction(const FrameView& frame, uint32_t pixel) {
   const CameraView& c = frame.camera;
-  const uint32_t column = pixel % frame.width, row = frame.first_row + pixel / frame.width;
+  const uint32_t column = frame.first_column + pixel % frame.width;
+  const uint32_t row = frame.first_row + pixel / frame.width;
   SampleOffset offset{0, 0};
   if (frame.samples > 1) offset = sample_offset(column, row, frame.sample);
   return normalised(c.corner + c.right * (column + offset.x) + c.down * (row + offset.y));
