@@ -17,34 +17,6 @@ namespace {
 
 constexpr size_t kPixelGrain = 1024;
 
-template <class T>
-const T* data_or_null(std::span<const T> s) {
-  return s.empty() ? nullptr : s.data();
-}
-
-/// The objects as the stages see them: sections where they are mapped, triangles expanded.
-struct Objects {
-  std::vector<HugeArray<TriangleVertices>> triangles;
-  std::vector<ShadedObjectView> views;
-
-  explicit Objects(const LoadedScene& scene) : triangles(scene.objects.size()), views(scene.objects.size()) {
-    for (size_t i = 0; i < scene.objects.size(); ++i) {
-      if (!scene.objects[i].file) continue;
-      const nkd::ObjectFile& file = *scene.objects[i].file;
-      const nkd::Attributes& a = scene.objects[i].attributes;
-      const int bits = file.summary().lattice.bits;
-      triangles[i] = expand_triangles(file.geometry());
-      views[i] = {{file.geometry().nodes.data(), file.geometry().references.data(), triangles[i].data(), bits},
-                  file.summary().lattice.step(),
-                  data_or_null(a.source_primitives),
-                  data_or_null(a.normals),
-                  data_or_null(a.normal_indices),
-                  data_or_null(a.materials),
-                  data_or_null(a.material_ids)};
-    }
-  }
-};
-
 /// stage(pixel) for every pixel; returns the sum of what the calls return. Ends early once `progress` is cancelled.
 template <class Stage>
 uint64_t for_each_pixel(const Stage& stage, size_t pixels, SharedProgress& progress, double share) {
@@ -77,7 +49,7 @@ class CpuRenderer final : public Renderer {
   Timer opening_;
   const LoadedScene& scene_;
   RenderSettings settings_;
-  Objects objects_;
+  ExpandedObjects objects_;
   std::vector<InstanceView> instances_;
   std::vector<SurfaceHit> hits_;
   Holding holding_;
