@@ -16,6 +16,7 @@ struct Command {
 
 Command build_command(CLI::App& app);
 Command frame_command(CLI::App& app);
+Command paper_command(CLI::App& app);
 Command pareto_command(CLI::App& app);
 Command stress_command(CLI::App& app);
 Command surface_command(CLI::App& app);
