@@ -40,6 +40,12 @@ done
 $bin/kdrender dist/sibenik_paper.json -o "$out/paper-cpu.exr" --gamma-exr --device cpu --quiet
 cmp "$out/paper.exr" "$out/paper-cpu.exr" && echo "the paper's frame: the same EXR bytes"
 
+echo "== from the paper's dense pipeline to ours, step by step"
+for scene in sibenik_paper cathedral; do
+  $bin/kdbench paper dist/$scene.json --device cuda --gamma-exr --json "$out/steps-$scene.json" >"$out/steps-$scene.md"
+  cat "$out/steps-$scene.md"
+done
+
 meshes="sibenik sponza bunny dragon_res2 staircase living_room"
 echo "== traversal, 1920 x 1080, and what exactness costs: the same kernel with the usual float tests"
 for mesh in $meshes; do
@@ -48,6 +54,11 @@ for mesh in $meshes; do
       --json "$out/trace-$mesh-$test.json"
   done
 done
+
+echo "== the floor: instructions and bytes, the chip's rates, and what was measured"
+$bin/kdbench floor $(printf 'dist/objects/%s.nkd ' $meshes) --cameras dist/shared/data/cameras --device cuda --repeat 20 \
+  --json "$out/floor.json" >"$out/floor.md"
+cat "$out/floor.md"
 
 echo "== run time against error"
 $bin/kdbench pareto $(printf 'dist/shared/data/%s.ply ' $meshes) --size 1920x1080 --device cuda --csv "$out/pareto-cuda.csv" --json "$out/pareto-cuda.json" \

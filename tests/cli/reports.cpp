@@ -28,8 +28,8 @@ TEST_SUITE("reports") {
   }
 
   TEST_CASE("the schemas are of one draft, and closed") {
-    for (const char* name : {"kdbuild-stats", "kdrender-stats", "kdbench-trace", "kdbench-build", "kdbench-paper",
-                             "kdbench-pareto", "kdbench-stress"}) {
+    for (const char* name : {"kdbuild-stats", "kdrender-stats", "kdbench-trace", "kdbench-build", "kdbench-floor",
+                             "kdbench-paper", "kdbench-pareto", "kdbench-stress"}) {
       const json schema = read_schema(name);
       CHECK(schema["$schema"] == "https://json-schema.org/draft/2020-12/schema");
       for (const json& part : schema.value("oneOf", json::array({schema}))) {
