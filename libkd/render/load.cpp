@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "scene/nesting.h"
+
 namespace kd::render {
 
 namespace {
@@ -24,16 +26,6 @@ Needs needs_of(const scene::Scene& scene, const RenderSettings& settings) {
   const bool lit =
       std::any_of(scene.lights.begin(), scene.lights.end(), [](const auto& l) { return !is_black(l.colour); });
   return {lit || !is_black(scene.ambient), lit || asked(image::Aov::normal), asked(image::Aov::primitive)};
-}
-
-/// Whether some instance of the object shows the object's own materials.
-bool shows_own_materials(const scene::Scene& scene, uint32_t object) {
-  for (const scene::Character& character : scene.characters) {
-    for (const scene::Part& part : character.parts) {
-      if (part.object == object && !part.material) return true;
-    }
-  }
-  return false;
 }
 
 Result<void> load_attributes(LoadedObject& object, const Needs& needs, Skipped& skipped) {
@@ -100,12 +92,12 @@ void load_lights(const scene::Scene& scene, LoadedScene& loaded) {
 
 Result<LoadedScene> load_scene(const scene::Scene& scene, const RenderSettings& settings) {
   LoadedScene loaded;
-  const std::vector<bool> used = scene::used_objects(scene);
   const Needs needs = needs_of(scene, settings);
   std::vector<Lattice> lattices(scene.objects.size());
   loaded.objects.resize(scene.objects.size());
+  const std::vector<scene::ObjectUse> uses = scene::object_uses(scene);
   for (uint32_t i = 0; i < scene.objects.size(); ++i) {
-    if (!used[i]) {
+    if (!uses[i].placed) {
       ++loaded.skipped.objects;
       continue;
     }
@@ -119,7 +111,7 @@ Result<LoadedScene> load_scene(const scene::Scene& scene, const RenderSettings& 
     lattices[i] = file->summary().lattice;
     loaded.objects[i].file = std::move(*file);
     Needs own = needs;
-    own.materials = needs.materials && shows_own_materials(scene, i);
+    own.materials = needs.materials && uses[i].own_materials;
     if (auto attributes = load_attributes(loaded.objects[i], own, loaded.skipped); !attributes)
       return attributes.error();
   }
@@ -128,10 +120,9 @@ Result<LoadedScene> load_scene(const scene::Scene& scene, const RenderSettings& 
   if (!instances) return instances.error();
   loaded.instances = std::move(*instances);
   loaded.hierarchy = scene::build_hierarchy(loaded.instances);
-  for (const scene::Instance& instance : loaded.instances) {
-    loaded.override_of.push_back(instance.material ? static_cast<uint32_t>(loaded.overrides.size()) : kNone);
-    if (instance.material) loaded.overrides.push_back(*instance.material);
-  }
+  loaded.overrides = scene::override_materials(scene);
+  static_assert(kNone == scene::kOwnMaterials);
+  for (const scene::Instance& instance : loaded.instances) loaded.override_of.push_back(instance.material);
   load_lights(scene, loaded);
   loaded.camera = camera_view(scene.camera, scene.film);
   loaded.film = scene.film;

@@ -1,8 +1,7 @@
-// Instances: every part of every character, placed.
+// Instances: every object that parts of shown characters place, placed.
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -15,19 +14,23 @@
 
 namespace kd::scene {
 
+constexpr uint32_t kOwnMaterials = 0xffffffffu;
+
 struct Instance {
-  uint32_t object = 0;  // index into Scene::objects
+  uint32_t object = 0;                // index into Scene::objects
+  uint32_t material = kOwnMaterials;  // index into override_materials(), instead of the object's own
   Frame lattice_to_scene;
   InverseFrame scene_to_lattice;
-  Box3d box_scene;                   // around the object's box as placed
-  std::optional<Material> material;  // instead of the object's own
+  Box3d box_scene;  // around the object's box as placed
 };
 
-/// Which objects some part places, by index.
-std::vector<bool> used_objects(const Scene& scene);
+/// The materials of all parts that have one, in the order of the scene file.
+std::vector<Material> override_materials(const Scene& scene);
 
-/// Instances in the order of the scene file. `lattices`: one an object; those of objects that no part places are not
-/// read. ErrorClass::scene, with the part's line, if a placement is singular or leaves the range of double.
+/// Instances in the order of the scene file: of every character that is shown, of each of its parts, and in the place
+/// of a part that places a character, those of that character. `lattices`: one an object; those of objects that no part
+/// places are not read. ErrorClass::scene, with the part's line, if a placement is singular or leaves the range of
+/// double, or for a NestingFault (nesting.h); ErrorClass::resource if there is no memory for them.
 Result<std::vector<Instance>> place_instances(const Scene& scene, std::span<const Lattice> lattices);
 
 /// A tree of boxes over the instances: node 0 is the root, a leaf holds one instance, children follow their parents.

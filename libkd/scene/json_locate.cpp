@@ -59,6 +59,7 @@ class Scanner {
   bool enumerator(const reflection::Enum& type);
   bool number();
   bool whole_number();
+  bool truth();
   bool string(std::string_view& content);
 
   int root_index() const;
@@ -106,6 +107,8 @@ bool Scanner::value(const Shape& shape) {
     }
     case reflection::Double:
       return number();
+    case reflection::Bool:
+      return truth();
     default:
       return shape.index >= 0 ? enumerator(*schema_.enums()->Get(index)) : whole_number();
   }
@@ -213,6 +216,15 @@ bool Scanner::whole_number() {
   }
   at_ += token.size();
   return true;
+}
+
+bool Scanner::truth() {
+  for (const std::string_view word : {"true", "false"}) {
+    if (!json_.substr(at_).starts_with(word) || is_word(peek(word.size()))) continue;
+    at_ += word.size();
+    return true;
+  }
+  return expected("true or false");
 }
 
 /// The number that stands here by JSON's grammar (no plus sign, leading zero, hexadecimal or bare point), or nothing.

@@ -16,6 +16,8 @@ namespace kd::scene {
 
 constexpr uint32_t kMaxFilmSide = 65536;         // pixels
 constexpr uint64_t kMaxFilmPixels = 1ull << 28;  // width x height
+constexpr int kMaxNesting = 16;                  // characters within one another, the outermost included
+constexpr uint32_t kMaxInstances = 1u << 26;     // of all shown characters together
 
 /// In pixels, each from 1 to kMaxFilmSide, their product at most kMaxFilmPixels.
 struct FilmSize {
@@ -64,18 +66,25 @@ struct FramePlacement {
 };
 
 using Placement = std::variant<BoxPlacement, TransformPlacement, FramePlacement>;
+/// The same without a box: a character has no unit cube.
+using CharacterPlacement = std::variant<TransformPlacement, FramePlacement>;
 
 struct Part {
   std::string name;     // may be empty
-  uint32_t object = 0;  // index into Scene::objects
+  uint32_t object = 0;  // index into Scene::objects; not read if the part places a character
   Placement placement = TransformPlacement{};
-  std::optional<Material> material;  // instead of the object's own
-  int line = 0;                      // in the scene file, from 1, for errors that only its object's box can show
+  std::optional<Material> material;   // instead of those of everything below it: a part further out wins
+  int line = 0;                       // in the scene file, from 1, for errors that only its object's box can show
+  std::optional<uint32_t> character;  // index into Scene::characters: the part places it, and no object
 };
 
+/// Characters may place one another, but none itself, not even through others, and at most kMaxNesting deep.
 struct Character {
   std::string name;  // may be empty
   std::vector<Part> parts;
+  CharacterPlacement placement = TransformPlacement{};  // of its parts' space in the space around it
+  bool shown = true;                                    // else it is seen only where parts place it
+  int line = 0;                                         // as a part's
 };
 
 struct Scene {

@@ -67,15 +67,41 @@ std::string json_string(std::string_view clean) {
   return out + '"';
 }
 
+/// `name` clean and not empty, numbered from `number` on until it is none of those taken, which it then is.
+std::string free_name(const std::string& name, const char* otherwise, size_t number,
+                      std::unordered_set<std::string>& taken) {
+  const std::string clean = clean_text(name.empty() ? otherwise : name);
+  std::string out = clean;
+  for (size_t i = number; !taken.insert(out).second; ++i) out = fmt::format("{} {}", clean, i);
+  return out;
+}
+
 /// Names as they are written: clean, not empty, no two the same.
 std::vector<std::string> object_names(const Scene& scene) {
   std::unordered_set<std::string> taken;
   std::vector<std::string> names;
   for (const SceneObject& object : scene.objects) {
-    const std::string clean = clean_text(object.name.empty() ? "object" : object.name);
-    std::string name = clean;
-    for (size_t i = names.size(); !taken.insert(name).second; ++i) name = fmt::format("{} {}", clean, i + 1);
-    names.push_back(name);
+    names.push_back(free_name(object.name, "object", names.size() + 1, taken));
+  }
+  return names;
+}
+
+/// The same, but a character that no part places may have any name, or none.
+std::vector<std::string> character_names(const Scene& scene) {
+  std::vector<bool> placed(scene.characters.size(), false);
+  for (const Character& character : scene.characters) {
+    for (const Part& part : character.parts) {
+      if (part.character) placed[*part.character] = true;
+    }
+  }
+  std::unordered_set<std::string> taken;
+  std::vector<std::string> names;
+  for (const Character& character : scene.characters) names.push_back(clean_text(character.name));
+  for (size_t i = 0; i < names.size(); ++i) {
+    if (!placed[i]) taken.insert(names[i]);
+  }
+  for (size_t i = 0; i < names.size(); ++i) {
+    if (placed[i]) names[i] = free_name(names[i], "character", i + 1, taken);
   }
   return names;
 }
@@ -95,7 +121,8 @@ fs::path relative_file(const std::string& file, const std::string& scene_path) {
 
 class Writer {
  public:
-  explicit Writer(const Scene& scene, const std::string& path) : scene_(scene), path_(path) {}
+  explicit Writer(const Scene& scene, const std::string& path)
+      : scene_(scene), path_(path), object_names_(object_names(scene)), character_names_(character_names(scene)) {}
 
   Result<std::string> write();
 
@@ -124,14 +151,26 @@ class Writer {
     return fmt::format(R"({{"point": {}, "x_axis": {}, "y_axis": {}, "z_axis": {}}})", vector(f.point),
                        vector(f.x_axis), vector(f.y_axis), vector(f.z_axis));
   }
-  std::string placement(const Placement& placement);
+  std::string placement(const BoxPlacement& box) { return ", \"box\": " + frame(box.box); }
+  std::string placement(const FramePlacement& f) { return ", \"frame\": " + frame(f.frame); }
+  std::string placement(const TransformPlacement& transform);
   std::string material(const Material& m) {
     return fmt::format(R"({{"ambient": {}, "diffuse": {}, "specular": {}, "shininess": {}}})", vector(m.ambient),
                        vector(m.diffuse), vector(m.specular), number(m.shininess));
   }
   void put_light(const Light& light);
-  void put_object(const SceneObject& object, const std::string& name);
-  void put_part(const Part& part, const std::vector<std::string>& names);
+  void put_object(const SceneObject& object);
+  void put_character(const Character& character);
+  void put_part(const Part& part);
+  /// `one` for each of `items`, one a line behind `indent`.
+  template <class Items, class One>
+  void put_list(const Items& items, const char* indent, const One& one) {
+    const char* before = "";
+    for (const auto& item : items) {
+      put("{}\n{}", std::exchange(before, ","), indent);
+      one(item);
+    }
+  }
 
   void fail(std::string what) {
     if (!error_) error_ = Error{ErrorClass::scene, path_, std::move(what)};
@@ -139,15 +178,14 @@ class Writer {
 
   const Scene& scene_;
   const std::string& path_;
+  const std::vector<std::string> object_names_;
+  const std::vector<std::string> character_names_;
   std::string out_;
   std::optional<Error> error_;
 };
 
 /// As members that follow others; nothing for what is by default.
-std::string Writer::placement(const Placement& placement) {
-  if (const auto* box = std::get_if<BoxPlacement>(&placement)) return ", \"box\": " + frame(box->box);
-  if (const auto* f = std::get_if<FramePlacement>(&placement)) return ", \"frame\": " + frame(f->frame);
-  const auto& t = std::get<TransformPlacement>(placement);
+std::string Writer::placement(const TransformPlacement& t) {
   const TransformPlacement standard;
   std::string out;
   if (t.translate != standard.translate) out += ", \"translate\": " + vector(t.translate);
@@ -166,7 +204,8 @@ void Writer::put_light(const Light& light) {
   }
 }
 
-void Writer::put_object(const SceneObject& object, const std::string& name) {
+void Writer::put_object(const SceneObject& object) {
+  const std::string& name = object_names_[static_cast<size_t>(&object - scene_.objects.data())];
   const std::string file = relative_file(object.file, path_).string();
   if (file.empty() || clean_text(file) != file) {
     fail(fmt::format("the file name of object '{}' cannot be in a scene file: rename it", name));
@@ -174,23 +213,28 @@ void Writer::put_object(const SceneObject& object, const std::string& name) {
   put(R"({{"name": {}, "file": {}}})", json_string(name), json_string(file));
 }
 
-void Writer::put_part(const Part& part, const std::vector<std::string>& names) {
+void Writer::put_part(const Part& part) {
   put("{{");
   if (!part.name.empty()) put("\"name\": {}, ", json_string(clean_text(part.name)));
-  put("\"object\": {}{}", json_string(names[part.object]), placement(part.placement));
+  const std::string placed = part.character ? "\"character\": " + json_string(character_names_[*part.character])
+                                            : "\"object\": " + json_string(object_names_[part.object]);
+  put("{}{}", placed, std::visit([&](const auto& p) { return placement(p); }, part.placement));
   if (part.material) put(", \"material\": {}", material(*part.material));
   put("}}");
 }
 
+void Writer::put_character(const Character& character) {
+  const std::string& name = character_names_[static_cast<size_t>(&character - scene_.characters.data())];
+  std::string before;  // members, each behind a comma
+  if (!name.empty()) before += ", \"name\": " + json_string(name);
+  if (!character.shown) before += ", \"shown\": false";
+  before += std::visit([&](const auto& p) { return placement(p); }, character.placement);
+  put("{{{}{}\"parts\": [", before.substr(before.empty() ? 0 : 2), before.empty() ? "" : ", ");
+  put_list(character.parts, "      ", [&](const Part& part) { put_part(part); });
+  put("\n    ]}}");
+}
+
 Result<std::string> Writer::write() {
-  /// `one` for each of `items`, one a line behind `indent`.
-  const auto put_list = [&](const auto& items, const char* indent, const auto& one) {
-    const char* before = "";
-    for (const auto& item : items) {
-      put("{}\n{}", std::exchange(before, ","), indent);
-      one(item);
-    }
-  };
   put("  \"film\": {{\"width\": {}, \"height\": {}}},\n", scene_.film.width, scene_.film.height);
   const Camera& camera = scene_.camera;
   put("  \"camera\": {{\"position\": {}, \"target\": {}, \"up\": {}, \"vertical_fov\": {}}},\n",
@@ -198,18 +242,9 @@ Result<std::string> Writer::write() {
   put("  \"background\": {},\n  \"ambient\": {},\n  \"lights\": [", vector(scene_.background), vector(scene_.ambient));
   put_list(scene_.lights, "    ", [&](const Light& light) { put_light(light); });
   put("{}],\n  \"objects\": [", scene_.lights.empty() ? "" : "\n  ");
-  const std::vector<std::string> names = object_names(scene_);
-  put_list(scene_.objects, "    ", [&](const SceneObject& object) {
-    put_object(object, names[static_cast<size_t>(&object - scene_.objects.data())]);
-  });
+  put_list(scene_.objects, "    ", [&](const SceneObject& object) { put_object(object); });
   put("\n  ],\n  \"characters\": [");
-  put_list(scene_.characters, "    ", [&](const Character& character) {
-    put("{{");
-    if (!character.name.empty()) put("\"name\": {}, ", json_string(clean_text(character.name)));
-    put("\"parts\": [");
-    put_list(character.parts, "      ", [&](const Part& part) { put_part(part, names); });
-    put("\n    ]}}");
-  });
+  put_list(scene_.characters, "    ", [&](const Character& character) { put_character(character); });
   put("\n  ]\n}}\n");
   if (error_) return *error_;
   return head_of(out_) + out_;

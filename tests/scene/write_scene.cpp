@@ -42,6 +42,15 @@ Scene full_scene(const test::TempFolder& folder) {
   plain.name = "tab\tand \"quotes\"";
   plain.object = 1;
   s.characters = {{"first", {box, frame, moved}}, {"", {turned, plain}}};
+  // Characters within others, one of the same name as another and one without.
+  Part first, second;
+  first.character = 3;
+  first.material = Material{};
+  second.character = 4;
+  second.placement = TransformPlacement{{1, 2, 3}};
+  s.characters.push_back({"outer", {first, second, box}, FramePlacement{{{1, 2, 3}, {0, 1, 0}, {1, 0, 0}, {0, 0, 1}}}});
+  s.characters.push_back({"first", {plain}, TransformPlacement{{0, 1, 0}, {0, 1, 0}, 45, {2, 2, 2}}, false});
+  s.characters.push_back({"", {plain}, TransformPlacement{}, false});
   return s;
 }
 
@@ -49,13 +58,17 @@ bool same(const Frame& a, const Frame& b) {
   return a.point == b.point && a.x_axis == b.x_axis && a.y_axis == b.y_axis && a.z_axis == b.z_axis;
 }
 
-bool same(const Placement& a, const Placement& b) {
-  if (a.index() != b.index()) return false;
-  if (const auto* box = std::get_if<BoxPlacement>(&a)) return same(box->box, std::get<BoxPlacement>(b).box);
-  if (const auto* f = std::get_if<FramePlacement>(&a)) return same(f->frame, std::get<FramePlacement>(b).frame);
-  const auto &t = std::get<TransformPlacement>(a), &u = std::get<TransformPlacement>(b);
+bool same(const BoxPlacement& a, const BoxPlacement& b) { return same(a.box, b.box); }
+bool same(const FramePlacement& a, const FramePlacement& b) { return same(a.frame, b.frame); }
+bool same(const TransformPlacement& t, const TransformPlacement& u) {
   return t.translate == u.translate && t.rotate_axis == u.rotate_axis && t.rotate_degrees == u.rotate_degrees &&
          t.scale == u.scale;
+}
+
+template <class... Kinds>
+bool same(const std::variant<Kinds...>& a, const std::variant<Kinds...>& b) {
+  if (a.index() != b.index()) return false;
+  return std::visit([&](const auto& x) { return same(x, std::get<std::decay_t<decltype(x)>>(b)); }, a);
 }
 
 Scene written_and_read(const Scene& scene, const std::string& path) {
@@ -100,11 +113,14 @@ TEST_CASE("write_scene: everything is read back as it was") {
   }
   REQUIRE(r.characters.size() == s.characters.size());
   for (size_t i = 0; i < s.characters.size(); ++i) {
-    CHECK(r.characters[i].name == s.characters[i].name);
+    CHECK(r.characters[i].name == (i == 3 ? "first 4" : i == 4 ? "character" : s.characters[i].name));
+    CHECK(r.characters[i].shown == s.characters[i].shown);
+    CHECK(same(r.characters[i].placement, s.characters[i].placement));
     REQUIRE(r.characters[i].parts.size() == s.characters[i].parts.size());
     for (size_t k = 0; k < s.characters[i].parts.size(); ++k) {
       const Part &a = s.characters[i].parts[k], &b = r.characters[i].parts[k];
       CHECK(a.object == b.object);
+      CHECK(a.character == b.character);
       CHECK(same(a.placement, b.placement));
       CHECK(a.material == b.material);
     }

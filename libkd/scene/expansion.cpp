@@ -1,0 +1,193 @@
+#include "scene/expansion.h"
+
+#include <algorithm>
+#include <limits>
+#include <mutex>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "scene/nesting.h"
+#include "scene/placement.h"
+#include "sys/parallel.h"
+
+namespace kd::scene {
+
+namespace {
+
+/// A parallel loop takes at least about so many instances at once.
+constexpr size_t kInstanceGrain = 256;
+
+size_t grain_of(size_t pieces, size_t instances) {
+  return std::max<size_t>(1, kInstanceGrain * pieces / std::max<size_t>(1, instances));
+}
+
+Box3d placed_box(const Frame& lattice_to_scene, const Lattice& lattice) {
+  const Box3u cube = lattice.cube();
+  Box3d box;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3u q{corner & 1 ? cube.hi.x : 0, corner & 2 ? cube.hi.y : 0, corner & 4 ? cube.hi.z : 0};
+    box.extend(lattice_to_scene.apply_point(vec_cast<double>(q)));
+  }
+  return box;
+}
+
+std::string called(const Scene& scene, const Part& part) {
+  if (!part.name.empty()) return fmt::format("part '{}'", part.name);
+  return fmt::format("a part of '{}'",
+                     part.character ? scene.characters[*part.character].name : scene.objects[part.object].name);
+}
+
+std::string called(const Scene&, const Character& character) {
+  return character.name.empty() ? "a character" : fmt::format("character '{}'", character.name);
+}
+
+template <class Placed>
+Error placement_error(const Scene& scene, const Placed& placed, std::string_view what) {
+  return {ErrorClass::scene, fmt::format("{}:{}", scene.path, placed.line),
+          fmt::format("{}: {}", called(scene, placed), what)};
+}
+
+constexpr std::string_view kSingular =
+    "the placement is singular: its axes must be finite, not zero, and not lie in a plane";
+constexpr std::string_view kSingularTogether =
+    "the placement is singular together with those around it: its axes must not lie in a plane";
+constexpr std::string_view kOutOfRange =
+    "the placement leaves the range of double precision: bring it nearer or scale it less";
+
+/// Keeps the error of the first instance that has one, whichever thread met it first.
+class FirstError {
+ public:
+  void add(uint32_t instance, Error error) {
+    const std::lock_guard lock(mutex_);
+    if (error_ && instance >= instance_) return;
+    instance_ = instance;
+    error_ = std::move(error);
+  }
+  Result<void> result() const { return error_ ? Result<void>(*error_) : Result<void>(); }
+
+ private:
+  std::mutex mutex_;
+  uint32_t instance_ = 0;
+  std::optional<Error> error_;
+};
+
+}  // namespace
+
+/// Walks down from the shown characters, composing frames.
+class Placer {
+ public:
+  Placer(const Expansion& expansion, std::span<Instance> out)
+      : expansion_(expansion), scene_(*expansion.scene_), out_(out) {}
+
+  Result<void> place() {
+    const auto& roots = expansion_.roots_;
+    parallel_ranges(roots.size(), grain_of(roots.size(), expansion_.count_), [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i)
+        place_character(roots[i].character, {nullptr, {}, kOwnMaterials}, roots[i].first);
+    });
+    return errors_.result();
+  }
+
+ private:
+  /// A part or a character on the way down to an instance.
+  struct Level {
+    const Level* outer = nullptr;
+    Frame to_scene;
+    uint32_t material = kOwnMaterials;  // of the outermost part that has one
+    const Part* part = nullptr;
+    const Character* character = nullptr;
+  };
+
+  void place_character(uint32_t index, const Level& outer, uint32_t first) {
+    const Character& character = scene_.characters[index];
+    const Expansion::CharacterPlan& plan = expansion_.plans_[index];
+    const Level level{&outer, compose(outer.to_scene, placement_frame(character.placement)), outer.material, nullptr,
+                      &character};
+    parallel_ranges(character.parts.size(), grain_of(character.parts.size(), plan.count),
+                    [&](size_t begin, size_t end) {
+                      for (size_t k = begin; k < end; ++k) {
+                        place_part(character.parts[k], level, first + plan.first[k], plan.material[k]);
+                      }
+                    });
+  }
+
+  void place_part(const Part& part, const Level& outer, uint32_t first, uint32_t material) {
+    const Level level{&outer, compose(outer.to_scene, placement_frame(part.placement)),
+                      outer.material == kOwnMaterials ? material : outer.material, &part, nullptr};
+    if (part.character) {
+      place_character(*part.character, level, first);
+    } else {
+      place_instance(part, level, first);
+    }
+  }
+
+  void place_instance(const Part& part, const Level& level, uint32_t index) {
+    if (is_singular(level.to_scene)) return errors_.add(index, singular_error(level));
+    const Expansion::ObjectFrames& object = expansion_.objects_[part.object];
+    const bool box = std::holds_alternative<BoxPlacement>(part.placement);
+    Instance instance;
+    instance.object = part.object;
+    instance.material = level.material;
+    instance.lattice_to_scene = compose(level.to_scene, box ? object.unit_cube : object.model);
+    instance.scene_to_lattice = invert(instance.lattice_to_scene);
+    instance.box_scene = placed_box(instance.lattice_to_scene, object.lattice);
+    const InverseFrame& back = instance.scene_to_lattice;
+    if (!is_finite(instance.box_scene.lo) || !is_finite(instance.box_scene.hi) || !is_finite(back.x_row) ||
+        !is_finite(back.y_row) || !is_finite(back.z_row)) {
+      return errors_.add(index, placement_error(scene_, part, kOutOfRange));
+    }
+    out_[index] = instance;
+  }
+
+  /// Blames the outermost placement that is singular by itself, or else the part.
+  Error singular_error(const Level& level) const {
+    std::optional<Error> error;
+    for (const Level* at = &level; at->outer; at = at->outer) {
+      if (at->part && is_singular(placement_frame(at->part->placement))) {
+        error = placement_error(scene_, *at->part, kSingular);
+      } else if (at->character && is_singular(placement_frame(at->character->placement))) {
+        error = placement_error(scene_, *at->character, kSingular);
+      }
+    }
+    return error ? *error : placement_error(scene_, *level.part, kSingularTogether);
+  }
+
+  const Expansion& expansion_;
+  const Scene& scene_;
+  std::span<Instance> out_;
+  FirstError errors_;
+};
+
+Result<Expansion> Expansion::of(const Scene& scene, std::span<const Lattice> lattices) {
+  const InstanceCounts counts = count_instances(scene);
+  if (counts.fault) {
+    const Part& part = scene.characters[counts.fault->character].parts[counts.fault->part];
+    return placement_error(scene, part, counts.fault->what);
+  }
+  Expansion out(scene);
+  uint32_t materials = 0;
+  for (uint32_t i = 0; i < scene.characters.size(); ++i) {
+    const Character& character = scene.characters[i];
+    CharacterPlan plan;
+    plan.count = counts.of_character[i];
+    plan.first.reserve(character.parts.size());
+    plan.material.reserve(character.parts.size());
+    uint32_t first = 0;
+    for (const Part& part : character.parts) {
+      plan.first.push_back(first);
+      plan.material.push_back(part.material ? materials++ : kOwnMaterials);
+      first += part.character ? counts.of_character[*part.character] : 1;
+    }
+    out.plans_.push_back(std::move(plan));
+    if (!character.shown) continue;
+    out.roots_.push_back({i, out.count_});
+    out.count_ += counts.of_character[i];
+  }
+  for (const Lattice& lattice : lattices) out.objects_.push_back({lattice.frame(), unit_cube_frame(lattice), lattice});
+  return out;
+}
+
+Result<void> Expansion::place_all(std::span<Instance> out) const { return Placer(*this, out).place(); }
+
+}  // namespace kd::scene

@@ -1,0 +1,84 @@
+// From the parsed tables to a Scene: what the schema cannot say is checked here. Internal to this room.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "scene/json_locate.h"
+#include "scene/scene.h"
+#include "scene_generated.h"
+#include "sys/result.h"
+
+namespace kd::scene {
+
+/// The schema that a scene file is of.
+const reflection::Schema& scene_schema();
+
+/// "path:line:column".
+std::string place_in_file(const std::string& path, Position at);
+
+/// Lines of the tables, each kind in the order of the text.
+struct TableLines {
+  std::vector<int> characters;
+  std::vector<int> parts;
+};
+
+/// Whether a colour's component or an exponent is in range.
+bool fits_float(double v);
+
+inline Vec3d to_vec3d(const scene_fb::Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+/// Turns the parsed tables into a Scene and checks what the schema cannot say. A failed check records an error, the
+/// first one only, and reading goes on with whatever is there; `read` then returns the error.
+class Reader {
+ public:
+  Reader(std::string_view json, const std::string& path, const TableLines& lines)
+      : json_(json), path_(path), lines_(lines) {}
+
+  Result<Scene> read(const scene_fb::Scene& source);
+
+ private:
+  void read_film(const scene_fb::Film& source);
+  void read_camera(const scene_fb::Camera& source);
+  Light read_light(const scene_fb::Light& source, const std::string& at);
+  SceneObject read_object(const scene_fb::Object& source, const std::string& at);
+  void name_characters(const scene_fb::Scene& source);
+  Character read_character(const scene_fb::Character& source, const std::string& at);
+  Part read_part(const scene_fb::Part& source, const std::string& at);
+  void read_placed(const scene_fb::Part& source, const std::string& at, Part& part);
+  template <class Source>
+  TransformPlacement read_transform(const Source& source, const std::string& at);
+  template <class Source>
+  CharacterPlacement read_placement(const Source& source, const std::string& at);
+  template <class Source>
+  void exclude_transform(const Source& source, const char* given, const std::string& at);
+  void check_nesting();
+  Material read_material(const scene_fb::Material& source, const std::string& at);
+  uint32_t find_object(const flatbuffers::String& name, const std::string& at);
+  uint32_t find_character(const flatbuffers::String& name, const std::string& at);
+
+  std::string read_text(const flatbuffers::String* source, const std::string& at);
+  std::string read_name(const flatbuffers::String& source, const std::string& at);
+  Vec3f read_colour(const scene_fb::Vec3* source, Vec3f otherwise, const std::string& at);
+
+  /// `present`: a field of the table `at` that does not go with its field `given`, if not null.
+  void exclude(const void* present, const char* name, const char* given, const std::string& at);
+  /// `at`: the faulty value's path in the JSON, such as "characters[0].parts[2].scale".
+  void fail(const std::string& at, std::string what) {
+    if (!error_)
+      error_ = Error{ErrorClass::scene, place_in_file(path_, locate(json_, scene_schema(), at)), std::move(what)};
+  }
+
+  std::string_view json_;
+  const std::string& path_;
+  const TableLines& lines_;
+  size_t parts_read_ = 0;
+  Scene scene_;
+  std::unordered_map<std::string, uint32_t> object_index_;
+  std::unordered_map<std::string, uint32_t> character_index_;  // kAmbiguous: of several
+  std::optional<Error> error_;
+};
+
+}  // namespace kd::scene
