@@ -19,12 +19,11 @@ struct Needs {
   bool source_primitives = false;
 };
 
-Needs needs_of(const scene::Scene& scene, const RenderSettings& settings) {
+Needs needs_of(const scene::Scene& scene, const std::vector<scene::Light>& lights, const RenderSettings& settings) {
   const auto asked = [&](image::Aov aov) {
     return std::find(settings.aovs.begin(), settings.aovs.end(), aov) != settings.aovs.end();
   };
-  const bool lit =
-      std::any_of(scene.lights.begin(), scene.lights.end(), [](const auto& l) { return !is_black(l.colour); });
+  const bool lit = std::any_of(lights.begin(), lights.end(), [](const auto& l) { return !is_black(l.colour); });
   return {lit || !is_black(scene.ambient), lit || asked(image::Aov::normal), asked(image::Aov::primitive)};
 }
 
@@ -76,8 +75,8 @@ CameraView camera_view(const scene::Camera& camera, scene::FilmSize film) {
   return view;
 }
 
-void load_lights(const scene::Scene& scene, LoadedScene& loaded) {
-  for (const scene::Light& light : scene.lights) {
+void load_lights(const std::vector<scene::Light>& lights, LoadedScene& loaded) {
+  for (const scene::Light& light : lights) {
     if (is_black(light.colour)) {
       ++loaded.skipped.black_lights;
       ++loaded.skipped.shadow_launches;
@@ -92,7 +91,11 @@ void load_lights(const scene::Scene& scene, LoadedScene& loaded) {
 
 Result<LoadedScene> load_scene(const scene::Scene& scene, const RenderSettings& settings) {
   LoadedScene loaded;
-  const Needs needs = needs_of(scene, settings);
+  const auto camera = scene::camera_at(scene, scene::kDefaultFrame);
+  if (!camera) return camera.error();
+  const auto lights = scene::lights_at(scene, scene::kDefaultFrame);
+  if (!lights) return lights.error();
+  const Needs needs = needs_of(scene, *lights, settings);
   std::vector<Lattice> lattices(scene.objects.size());
   loaded.objects.resize(scene.objects.size());
   const std::vector<scene::ObjectUse> uses = scene::object_uses(scene);
@@ -123,8 +126,8 @@ Result<LoadedScene> load_scene(const scene::Scene& scene, const RenderSettings& 
   loaded.overrides = scene::override_materials(scene);
   static_assert(kNone == scene::kOwnMaterials);
   for (const scene::Instance& instance : loaded.instances) loaded.override_of.push_back(instance.material);
-  load_lights(scene, loaded);
-  loaded.camera = camera_view(scene.camera, scene.film);
+  load_lights(*lights, loaded);
+  loaded.camera = camera_view(*camera, scene.film);
   loaded.film = scene.film;
   loaded.window = settings.crop.value_or(image::Window{0, 0, scene.film.width, scene.film.height});
   loaded.ambient = scene.ambient;

@@ -77,8 +77,8 @@ class FirstError {
 /// Walks down from the shown characters, composing frames.
 class Placer {
  public:
-  Placer(const Expansion& expansion, std::span<Instance> out)
-      : expansion_(expansion), scene_(*expansion.scene_), out_(out) {}
+  Placer(const Expansion& expansion, double frame, std::span<Instance> out)
+      : expansion_(expansion), scene_(*expansion.scene_), frame_(frame), out_(out) {}
 
   Result<void> place() {
     const auto& roots = expansion_.roots_;
@@ -102,8 +102,8 @@ class Placer {
   void place_character(uint32_t index, const Level& outer, uint32_t first) {
     const Character& character = scene_.characters[index];
     const Expansion::CharacterPlan& plan = expansion_.plans_[index];
-    const Level level{&outer, compose(outer.to_scene, placement_frame(character.placement)), outer.material, nullptr,
-                      &character};
+    const Level level{&outer, compose(outer.to_scene, placement_frame(character.placement, frame_)), outer.material,
+                      nullptr, &character};
     parallel_ranges(character.parts.size(), grain_of(character.parts.size(), plan.count),
                     [&](size_t begin, size_t end) {
                       for (size_t k = begin; k < end; ++k) {
@@ -113,7 +113,7 @@ class Placer {
   }
 
   void place_part(const Part& part, const Level& outer, uint32_t first, uint32_t material) {
-    const Level level{&outer, compose(outer.to_scene, placement_frame(part.placement)),
+    const Level level{&outer, compose(outer.to_scene, placement_frame(part.placement, frame_)),
                       outer.material == kOwnMaterials ? material : outer.material, &part, nullptr};
     if (part.character) {
       place_character(*part.character, level, first);
@@ -144,9 +144,9 @@ class Placer {
   Error singular_error(const Level& level) const {
     std::optional<Error> error;
     for (const Level* at = &level; at->outer; at = at->outer) {
-      if (at->part && is_singular(placement_frame(at->part->placement))) {
+      if (at->part && is_singular(placement_frame(at->part->placement, frame_))) {
         error = placement_error(scene_, *at->part, kSingular);
-      } else if (at->character && is_singular(placement_frame(at->character->placement))) {
+      } else if (at->character && is_singular(placement_frame(at->character->placement, frame_))) {
         error = placement_error(scene_, *at->character, kSingular);
       }
     }
@@ -155,6 +155,7 @@ class Placer {
 
   const Expansion& expansion_;
   const Scene& scene_;
+  double frame_;
   std::span<Instance> out_;
   FirstError errors_;
 };
@@ -188,6 +189,8 @@ Result<Expansion> Expansion::of(const Scene& scene, std::span<const Lattice> lat
   return out;
 }
 
-Result<void> Expansion::place_all(std::span<Instance> out) const { return Placer(*this, out).place(); }
+Result<void> Expansion::place_all(double frame, std::span<Instance> out) const {
+  return Placer(*this, frame, out).place();
+}
 
 }  // namespace kd::scene

@@ -17,8 +17,8 @@ class Expansion {
 
   uint32_t count() const { return count_; }
 
-  /// Writes all instances; `out` has count() of them. Errors as place_instances.
-  Result<void> place_all(std::span<Instance> out) const;
+  /// Writes all instances at a frame; `out` has count() of them. Errors as place_instances.
+  Result<void> place_all(double frame, std::span<Instance> out) const;
 
  private:
   friend class Placer;

@@ -16,12 +16,12 @@ std::vector<Material> override_materials(const Scene& scene) {
   return materials;
 }
 
-Result<std::vector<Instance>> place_instances(const Scene& scene, std::span<const Lattice> lattices) {
+Result<std::vector<Instance>> place_instances(const Scene& scene, std::span<const Lattice> lattices, double frame) {
   try {
     const auto expansion = Expansion::of(scene, lattices);
     if (!expansion) return expansion.error();
     std::vector<Instance> instances(expansion->count());
-    if (const auto placed = expansion->place_all(instances); !placed) return placed.error();
+    if (const auto placed = expansion->place_all(frame, instances); !placed) return placed.error();
     return instances;
   } catch (const std::bad_alloc&) {
     return Error{ErrorClass::resource, scene.path, "not enough memory for the scene's instances"};

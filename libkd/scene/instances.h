@@ -9,6 +9,7 @@
 #include "core/frame.h"
 #include "core/hierarchy.h"
 #include "core/lattice.h"
+#include "scene/motion.h"
 #include "scene/scene.h"
 #include "sys/result.h"
 
@@ -27,11 +28,12 @@ struct Instance {
 /// The materials of all parts that have one, in the order of the scene file.
 std::vector<Material> override_materials(const Scene& scene);
 
-/// Instances in the order of the scene file: of every character that is shown, of each of its parts, and in the place
-/// of a part that places a character, those of that character. `lattices`: one an object; those of objects that no part
-/// places are not read. ErrorClass::scene, with the part's line, if a placement is singular or leaves the range of
-/// double, or for a NestingFault (nesting.h); ErrorClass::resource if there is no memory for them.
-Result<std::vector<Instance>> place_instances(const Scene& scene, std::span<const Lattice> lattices);
+/// The instances at a frame, in the order of the scene file: of every character that is shown, of each of its parts,
+/// and in the place of a part that places a character, those of that character. `lattices`: one an object; those of
+/// objects that no part places are not read. ErrorClass::scene, with the part's line, if a placement is singular or
+/// leaves the range of double, or for a NestingFault (nesting.h); ErrorClass::resource if there is no memory for them.
+Result<std::vector<Instance>> place_instances(const Scene& scene, std::span<const Lattice> lattices,
+                                              double frame = kDefaultFrame);
 
 /// A tree of boxes over the instances: node 0 is the root, a leaf holds one instance, children follow their parents.
 /// Split by the surface area heuristic over box centres, exhaustively; no deeper than kMaxHierarchyDepth. Empty for no

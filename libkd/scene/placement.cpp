@@ -3,16 +3,18 @@
 #include <cmath>
 #include <numbers>
 
+#include "scene/motion.h"
+
 namespace kd::scene {
 
 namespace {
 
-/// The rotation that `placement` asks for, as the images of the unit axes (Rodrigues).
-Frame rotation(const TransformPlacement& placement) {
-  const Vec3d k = normalised(placement.rotate_axis);
+/// The images of the unit axes (Rodrigues).
+Frame rotation(Vec3d axis, double degrees) {
+  const Vec3d k = normalised(axis);
   // Quarter turns are common, and should be exact.
-  const double quarters = placement.rotate_degrees / 90;
-  const double angle = placement.rotate_degrees * std::numbers::pi / 180;
+  const double quarters = degrees / 90;
+  const double angle = degrees * std::numbers::pi / 180;
   double s = std::sin(angle), c = std::cos(angle);
   if (quarters == std::nearbyint(quarters)) {
     s = std::nearbyint(s);
@@ -23,19 +25,25 @@ Frame rotation(const TransformPlacement& placement) {
 }
 
 struct FrameOf {
+  double frame;
   Frame operator()(const BoxPlacement& placement) const { return placement.box; }
   Frame operator()(const FramePlacement& placement) const { return placement.frame; }
   Frame operator()(const TransformPlacement& placement) const {
-    const Frame turn = placement.rotate_degrees == 0 ? Frame{} : rotation(placement);
-    const Vec3d scale = placement.scale;
-    return {placement.translate, turn.x_axis * scale.x, turn.y_axis * scale.y, turn.z_axis * scale.z};
+    if (!placement.keys.empty()) return still(interpolated(placement, frame));
+    return still(placement);
+  }
+  static Frame still(const TransformPlacement& t) {
+    const Frame turn = t.rotate_degrees == 0 ? Frame{} : rotation(t.rotate_axis, t.rotate_degrees);
+    return {t.translate, turn.x_axis * t.scale.x, turn.y_axis * t.scale.y, turn.z_axis * t.scale.z};
   }
 };
 
 }  // namespace
 
-Frame placement_frame(const Placement& placement) { return std::visit(FrameOf{}, placement); }
-Frame placement_frame(const CharacterPlacement& placement) { return std::visit(FrameOf{}, placement); }
+Frame placement_frame(const Placement& placement, double frame) { return std::visit(FrameOf{frame}, placement); }
+Frame placement_frame(const CharacterPlacement& placement, double frame) {
+  return std::visit(FrameOf{frame}, placement);
+}
 
 Frame unit_cube_frame(const Lattice& lattice) {
   const double unit = 1.0 / lattice_max(lattice.bits);

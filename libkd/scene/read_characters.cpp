@@ -85,6 +85,7 @@ void Reader::exclude_transform(const Source& source, const char* given, const st
   exclude(source.translate(), "translate", given, at);
   exclude(source.rotate(), "rotate", given, at);
   exclude(source.scale(), "scale", given, at);
+  exclude(source.keys(), "keys", given, at);
 }
 
 template <class Source>
@@ -98,16 +99,33 @@ template <class Source>
 TransformPlacement Reader::read_transform(const Source& source, const std::string& at) {
   TransformPlacement placement;
   if (source.translate()) placement.translate = to_vec3d(*source.translate());
-  if (source.scale()) placement.scale = to_vec3d(*source.scale());
-  if (placement.scale.x == 0 || placement.scale.y == 0 || placement.scale.z == 0) {
-    fail(at + ".scale", "no component of 'scale' may be zero");
+  if (source.scale()) placement.scale = read_scale(*source.scale(), at + ".scale");
+  if (source.rotate()) {
+    const Rotation rotation = read_rotation(*source.rotate(), at + ".rotate");
+    placement.rotate_axis = rotation.axis;
+    placement.rotate_degrees = rotation.degrees;
   }
-  if (!source.rotate()) return placement;
-  placement.rotate_axis = to_vec3d(*source.rotate()->axis());
-  if (placement.rotate_axis == Vec3d{0, 0, 0}) fail(at + ".rotate.axis", "the rotation's 'axis' must not be zero");
-  if (!source.rotate()->degrees()) fail(at + ".rotate", "the rotation lacks 'degrees'");
-  placement.rotate_degrees = source.rotate()->degrees().value_or(0);
+  placement.interpolation = to_interpolation(source.interpolation());
+  placement.keys = read_keys<TransformKey>(
+      source.keys(), at, [&](const scene_fb::TransformKey& k, const std::string& at_key, TransformKey& key) {
+        if (k.translate()) key.translate = to_vec3d(*k.translate());
+        if (k.rotate()) key.rotate = read_rotation(*k.rotate(), at_key + ".rotate");
+        if (k.scale()) key.scale = read_scale(*k.scale(), at_key + ".scale");
+      });
   return placement;
+}
+
+Vec3d Reader::read_scale(const scene_fb::Vec3& source, const std::string& at) {
+  const Vec3d scale = to_vec3d(source);
+  if (scale.x == 0 || scale.y == 0 || scale.z == 0) fail(at, "no component of 'scale' may be zero");
+  return scale;
+}
+
+Rotation Reader::read_rotation(const scene_fb::Rotation& source, const std::string& at) {
+  const Rotation rotation{to_vec3d(*source.axis()), source.degrees().value_or(0)};
+  if (rotation.axis == Vec3d{0, 0, 0}) fail(at + ".axis", "the rotation's 'axis' must not be zero");
+  if (!source.degrees()) fail(at, "the rotation lacks 'degrees'");
+  return rotation;
 }
 
 uint32_t Reader::find_object(const flatbuffers::String& name, const std::string& at) {

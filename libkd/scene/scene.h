@@ -25,21 +25,47 @@ struct FilmSize {
   uint32_t height = 512;
 };
 
+/// How a field goes from key to key: straight, or by a curve whose velocity has no jumps.
+enum class Interpolation : uint8_t { linear, smooth };
+
+constexpr double kMaxKeyFrame = 1e9;  // and -1e9 the least
+
+/// Keys say what some of a thing's fields are at a frame; frames increase strictly. A field goes through the keys that
+/// give it, and is held before the first and after the last of them. What no key gives stays as it is.
+struct CameraKey {
+  double frame = 0;
+  std::optional<Vec3d> position;
+  std::optional<Vec3d> target;
+  std::optional<Vec3d> up;
+  std::optional<double> vertical_fov_degrees;
+};
+
 /// Looks from `position` to `target`, which differ; `up` is not parallel to that way, and need not be perpendicular.
 struct Camera {
   Vec3d position{0, 0, 0};
   Vec3d target{0, 0, -1};
   Vec3d up{0, 1, 0};
   double vertical_fov_degrees = 45;  // over the film's height, between 0 and 180
+  std::vector<CameraKey> keys = {};
+  Interpolation interpolation = Interpolation::linear;
 };
 
 enum class LightKind : uint8_t { point, directional };
+
+struct LightKey {
+  double frame = 0;
+  std::optional<Vec3d> position;
+  std::optional<Vec3d> direction;
+  std::optional<Vec3f> colour;
+};
 
 struct Light {
   LightKind kind = LightKind::point;
   Vec3d position{0, 0, 0};    // scene space; of a point light
   Vec3d direction{0, -1, 0};  // the way the light travels, length 1; of a directional one
   Vec3f colour{1, 1, 1};      // >= 0
+  std::vector<LightKey> keys = {};
+  Interpolation interpolation = Interpolation::linear;
 };
 
 struct SceneObject {
@@ -52,12 +78,26 @@ struct BoxPlacement {
   Frame box;
 };
 
+struct Rotation {
+  Vec3d axis{0, 0, 1};  // not zero, of any length
+  double degrees = 0;   // counterclockwise
+};
+
+struct TransformKey {
+  double frame = 0;
+  std::optional<Vec3d> translate;
+  std::optional<Rotation> rotate;
+  std::optional<Vec3d> scale;
+};
+
 /// Applied to the object's model space: scaled first, then rotated counterclockwise about the axis, then moved.
 struct TransformPlacement {
   Vec3d translate{0, 0, 0};
   Vec3d rotate_axis{0, 0, 1};  // not zero, of any length
   double rotate_degrees = 0;
   Vec3d scale{1, 1, 1};  // no component is zero; a negative one mirrors
+  std::vector<TransformKey> keys = {};
+  Interpolation interpolation = Interpolation::linear;
 };
 
 /// The object's model space to scene space, by any invertible affine map.

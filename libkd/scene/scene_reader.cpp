@@ -74,6 +74,16 @@ Material Reader::read_material(const scene_fb::Material& source, const std::stri
   return material;
 }
 
+double Reader::read_frame(std::optional<double> source, std::optional<double> before, const std::string& at) {
+  if (!source) fail(at, "the key lacks 'frame'");
+  const double frame = source.value_or(0);
+  if (!(frame >= -kMaxKeyFrame && frame <= kMaxKeyFrame)) fail(at + ".frame", "'frame' must be from -1e9 to 1e9");
+  if (before && !(frame > *before)) {
+    fail(at + ".frame", fmt::format("the frames of keys must increase, and {} does not follow {}", frame, *before));
+  }
+  return frame;
+}
+
 void Reader::exclude(const void* present, const char* name, const char* given, const std::string& at) {
   if (!present) return;
   fail(fmt::format("{}.{}", at, name), fmt::format("'{}' does not go with '{}': keep one of them", name, given));

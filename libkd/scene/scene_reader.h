@@ -1,10 +1,13 @@
 // From the parsed tables to a Scene: what the schema cannot say is checked here. Internal to this room.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <unordered_map>
 #include <vector>
+
+#include <fmt/format.h>
 
 #include "scene/json_locate.h"
 #include "scene/scene.h"
@@ -42,7 +45,13 @@ class Reader {
  private:
   void read_film(const scene_fb::Film& source);
   void read_camera(const scene_fb::Camera& source);
+  void check_camera();
   Light read_light(const scene_fb::Light& source, const std::string& at);
+  Vec3d read_direction(const scene_fb::Vec3& source, const std::string& at);
+  /// `read_fields(source key, path, key)` reads what is not the frame.
+  template <class Key, class Sources, class ReadFields>
+  std::vector<Key> read_keys(const Sources* sources, const std::string& at, const ReadFields& read_fields);
+  double read_frame(std::optional<double> source, std::optional<double> before, const std::string& at);
   SceneObject read_object(const scene_fb::Object& source, const std::string& at);
   void name_characters(const scene_fb::Scene& source);
   Character read_character(const scene_fb::Character& source, const std::string& at);
@@ -54,6 +63,8 @@ class Reader {
   CharacterPlacement read_placement(const Source& source, const std::string& at);
   template <class Source>
   void exclude_transform(const Source& source, const char* given, const std::string& at);
+  Rotation read_rotation(const scene_fb::Rotation& source, const std::string& at);
+  Vec3d read_scale(const scene_fb::Vec3& source, const std::string& at);
   void check_nesting();
   Material read_material(const scene_fb::Material& source, const std::string& at);
   uint32_t find_object(const flatbuffers::String& name, const std::string& at);
@@ -80,5 +91,32 @@ class Reader {
   std::unordered_map<std::string, uint32_t> character_index_;  // kAmbiguous: of several
   std::optional<Error> error_;
 };
+
+template <class Key, class Sources, class ReadFields>
+std::vector<Key> Reader::read_keys(const Sources* sources, const std::string& at, const ReadFields& read_fields) {
+  std::vector<Key> keys;
+  if (!sources) return keys;
+  for (const auto* source : *sources) {
+    const std::string at_key = fmt::format("{}.keys[{}]", at, keys.size());
+    Key key;
+    key.frame = read_frame(source->frame(), keys.empty() ? std::nullopt : std::optional(keys.back().frame), at_key);
+    read_fields(*source, at_key, key);
+    keys.push_back(key);
+  }
+  return keys;
+}
+
+/// The first value that keys give a field, for a thing that is not told what it is without them.
+template <class Key, class T>
+std::optional<T> first_of(const std::vector<Key>& keys, std::optional<T> Key::*field) {
+  for (const Key& key : keys) {
+    if (key.*field) return key.*field;
+  }
+  return std::nullopt;
+}
+
+inline Interpolation to_interpolation(scene_fb::Interpolation source) {
+  return source == scene_fb::Interpolation::smooth ? Interpolation::smooth : Interpolation::linear;
+}
 
 }  // namespace kd::scene

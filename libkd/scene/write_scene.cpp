@@ -158,6 +158,30 @@ class Writer {
     return fmt::format(R"({{"ambient": {}, "diffuse": {}, "specular": {}, "shininess": {}}})", vector(m.ambient),
                        vector(m.diffuse), vector(m.specular), number(m.shininess));
   }
+  std::string rotation(const Rotation& r) {
+    return fmt::format(R"({{"axis": {}, "degrees": {}}})", vector(r.axis), number(r.degrees));
+  }
+  /// ", "name": value" for a field that is given.
+  std::string field(const char* name, const std::optional<double>& value) {
+    return value ? fmt::format(", \"{}\": {}", name, number(*value)) : "";
+  }
+  template <class T>
+  std::string field(const char* name, const std::optional<Vec3<T>>& value) {
+    return value ? fmt::format(", \"{}\": {}", name, vector(*value)) : "";
+  }
+  std::string fields(const CameraKey& k) {
+    return field("position", k.position) + field("target", k.target) + field("up", k.up) +
+           field("vertical_fov", k.vertical_fov_degrees);
+  }
+  std::string fields(const LightKey& k) {
+    return field("position", k.position) + field("direction", k.direction) + field("colour", k.colour);
+  }
+  std::string fields(const TransformKey& k) {
+    return field("translate", k.translate) + (k.rotate ? ", \"rotate\": " + rotation(*k.rotate) : "") +
+           field("scale", k.scale);
+  }
+  template <class Moving>
+  std::string motion(const Moving& moving);
   void put_light(const Light& light);
   void put_object(const SceneObject& object);
   void put_character(const Character& character);
@@ -190,18 +214,29 @@ std::string Writer::placement(const TransformPlacement& t) {
   std::string out;
   if (t.translate != standard.translate) out += ", \"translate\": " + vector(t.translate);
   if (t.rotate_axis != standard.rotate_axis || t.rotate_degrees != 0) {
-    out += fmt::format(R"(, "rotate": {{"axis": {}, "degrees": {}}})", vector(t.rotate_axis), number(t.rotate_degrees));
+    out += ", \"rotate\": " + rotation({t.rotate_axis, t.rotate_degrees});
   }
   if (t.scale != standard.scale) out += ", \"scale\": " + vector(t.scale);
+  return out + motion(t);
+}
+
+/// Keys and how they are joined, as members that follow others.
+template <class Moving>
+std::string Writer::motion(const Moving& moving) {
+  std::string out;
+  for (const auto& key : moving.keys) {
+    out += fmt::format(R"({}{{"frame": {}{}}})", out.empty() ? ", \"keys\": [" : ", ", number(key.frame), fields(key));
+  }
+  if (!out.empty()) out += "]";
+  if (moving.interpolation == Interpolation::smooth) out += ", \"interpolation\": \"smooth\"";
   return out;
 }
 
 void Writer::put_light(const Light& light) {
-  if (light.kind == LightKind::point) {
-    put(R"({{"kind": "point", "position": {}, "colour": {}}})", vector(light.position), vector(light.colour));
-  } else {
-    put(R"({{"kind": "directional", "direction": {}, "colour": {}}})", vector(light.direction), vector(light.colour));
-  }
+  const bool is_point = light.kind == LightKind::point;
+  put(R"({{"kind": "{}", "{}": {}, "colour": {}{}}})", is_point ? "point" : "directional",
+      is_point ? "position" : "direction", vector(is_point ? light.position : light.direction), vector(light.colour),
+      motion(light));
 }
 
 void Writer::put_object(const SceneObject& object) {
@@ -237,8 +272,9 @@ void Writer::put_character(const Character& character) {
 Result<std::string> Writer::write() {
   put("  \"film\": {{\"width\": {}, \"height\": {}}},\n", scene_.film.width, scene_.film.height);
   const Camera& camera = scene_.camera;
-  put("  \"camera\": {{\"position\": {}, \"target\": {}, \"up\": {}, \"vertical_fov\": {}}},\n",
-      vector(camera.position), vector(camera.target), vector(camera.up), number(camera.vertical_fov_degrees));
+  put("  \"camera\": {{\"position\": {}, \"target\": {}, \"up\": {}, \"vertical_fov\": {}{}}},\n",
+      vector(camera.position), vector(camera.target), vector(camera.up), number(camera.vertical_fov_degrees),
+      motion(camera));
   put("  \"background\": {},\n  \"ambient\": {},\n  \"lights\": [", vector(scene_.background), vector(scene_.ambient));
   put_list(scene_.lights, "    ", [&](const Light& light) { put_light(light); });
   put("{}],\n  \"objects\": [", scene_.lights.empty() ? "" : "\n  ");

@@ -50,8 +50,38 @@ Scene full_scene(const test::TempFolder& folder) {
   second.placement = TransformPlacement{{1, 2, 3}};
   s.characters.push_back({"outer", {first, second, box}, FramePlacement{{{1, 2, 3}, {0, 1, 0}, {1, 0, 0}, {0, 0, 1}}}});
   s.characters.push_back({"first", {plain}, TransformPlacement{{0, 1, 0}, {0, 1, 0}, 45, {2, 2, 2}}, false});
-  s.characters.push_back({"", {plain}, TransformPlacement{}, false});
+  TransformPlacement moving;
+  moving.scale = {1, 2, 3};
+  moving.interpolation = Interpolation::smooth;
+  moving.keys = {
+      {-0.5, Vec3d{0.1, 0, 0}, Rotation{{0, 1, 0}, 400}, {}}, {1, {}, {}, Vec3d{1, 1, -1}}, {2.25, {}, {}, {}}};
+  s.characters.push_back({"", {plain}, moving, false});
+  s.camera.interpolation = Interpolation::smooth;
+  s.camera.keys = {{1, Vec3d{0, 0, 0.1}, Vec3d{9, 8, 7}, Vec3d{0, 1, 0.1}, 33.3}, {2, Vec3d{0, 0, 1}, {}, {}, {}}};
+  s.lights[0].keys = {{1, Vec3d{0, 0, 0.1}, {}, Vec3f{0.1f, 0, 0}}, {7, {}, {}, Vec3f{0.2f, 0, 0}}};
+  s.lights[1].interpolation = Interpolation::smooth;
+  s.lights[1].keys = {{3, {}, Vec3d{0, -1, 0}, {}}};
   return s;
+}
+
+bool same(const Rotation& a, const Rotation& b) { return a.axis == b.axis && a.degrees == b.degrees; }
+
+bool same(const TransformKey& a, const TransformKey& b) {
+  return a.frame == b.frame && a.translate == b.translate && a.rotate.has_value() == b.rotate.has_value() &&
+         (!a.rotate || same(*a.rotate, *b.rotate)) && a.scale == b.scale;
+}
+bool same(const CameraKey& a, const CameraKey& b) {
+  return a.frame == b.frame && a.position == b.position && a.target == b.target && a.up == b.up &&
+         a.vertical_fov_degrees == b.vertical_fov_degrees;
+}
+bool same(const LightKey& a, const LightKey& b) {
+  return a.frame == b.frame && a.position == b.position && a.direction == b.direction && a.colour == b.colour;
+}
+
+template <class Moving>
+bool same_motion(const Moving& a, const Moving& b) {
+  return a.interpolation == b.interpolation && std::equal(a.keys.begin(), a.keys.end(), b.keys.begin(), b.keys.end(),
+                                                          [](const auto& x, const auto& y) { return same(x, y); });
 }
 
 bool same(const Frame& a, const Frame& b) {
@@ -62,7 +92,7 @@ bool same(const BoxPlacement& a, const BoxPlacement& b) { return same(a.box, b.b
 bool same(const FramePlacement& a, const FramePlacement& b) { return same(a.frame, b.frame); }
 bool same(const TransformPlacement& t, const TransformPlacement& u) {
   return t.translate == u.translate && t.rotate_axis == u.rotate_axis && t.rotate_degrees == u.rotate_degrees &&
-         t.scale == u.scale;
+         t.scale == u.scale && same_motion(t, u);
 }
 
 template <class... Kinds>
@@ -97,12 +127,14 @@ TEST_CASE("write_scene: everything is read back as it was") {
   CHECK(r.camera.target == s.camera.target);
   CHECK(r.camera.up == s.camera.up);
   CHECK(r.camera.vertical_fov_degrees == s.camera.vertical_fov_degrees);
+  CHECK(same_motion(r.camera, s.camera));
   CHECK(r.background == s.background);
   CHECK(r.ambient == s.ambient);
   REQUIRE(r.lights.size() == s.lights.size());
   for (size_t i = 0; i < s.lights.size(); ++i) {
     CHECK(r.lights[i].kind == s.lights[i].kind);
     CHECK(r.lights[i].colour == s.lights[i].colour);
+    CHECK(same_motion(r.lights[i], s.lights[i]));
   }
   CHECK(r.lights[0].position == s.lights[0].position);
   CHECK(r.lights[1].direction == s.lights[1].direction);
