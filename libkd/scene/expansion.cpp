@@ -1,9 +1,11 @@
 #include "scene/expansion.h"
 
 #include <algorithm>
+#include <cstring>
 #include <limits>
 #include <mutex>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -30,6 +32,14 @@ Box3d placed_box(const Frame& lattice_to_scene, const Lattice& lattice) {
     box.extend(lattice_to_scene.apply_point(vec_cast<double>(q)));
   }
   return box;
+}
+
+bool same_bits(const Frame& a, const Frame& b) { return std::memcmp(&a, &b, sizeof(Frame)) == 0; }
+
+template <class... Kinds>
+bool has_keys(const std::variant<Kinds...>& placement) {
+  const auto* transform = std::get_if<TransformPlacement>(&placement);
+  return transform && !transform->keys.empty();
 }
 
 std::string called(const Scene& scene, const Part& part) {
@@ -74,27 +84,29 @@ class FirstError {
 
 }  // namespace
 
-/// Walks down from the shown characters, composing frames.
+/// Walks down from the shown characters, composing frames. With `moved`, only to what moves.
 class Placer {
  public:
-  Placer(const Expansion& expansion, double frame, std::span<Instance> out)
-      : expansion_(expansion), scene_(*expansion.scene_), frame_(frame), out_(out) {}
+  Placer(const Expansion& expansion, double frame, std::span<Instance> out, std::span<uint8_t> moved)
+      : expansion_(expansion), scene_(*expansion.scene_), frame_(frame), out_(out), moved_(moved) {}
 
   Result<void> place() {
-    const auto& roots = expansion_.roots_;
+    const auto& roots = only_moving() ? expansion_.moving_roots_ : expansion_.roots_;
     parallel_ranges(roots.size(), grain_of(roots.size(), expansion_.count_), [&](size_t begin, size_t end) {
-      for (size_t i = begin; i < end; ++i)
-        place_character(roots[i].character, {nullptr, {}, kOwnMaterials}, roots[i].first);
+      for (size_t i = begin; i < end; ++i) place_character(roots[i].character, {}, roots[i].first);
     });
     return errors_.result();
   }
 
  private:
+  bool only_moving() const { return !moved_.empty(); }
+
   /// A part or a character on the way down to an instance.
   struct Level {
     const Level* outer = nullptr;
     Frame to_scene;
     uint32_t material = kOwnMaterials;  // of the outermost part that has one
+    bool moves = false;                 // by keys of its own or further out
     const Part* part = nullptr;
     const Character* character = nullptr;
   };
@@ -102,19 +114,26 @@ class Placer {
   void place_character(uint32_t index, const Level& outer, uint32_t first) {
     const Character& character = scene_.characters[index];
     const Expansion::CharacterPlan& plan = expansion_.plans_[index];
-    const Level level{&outer, compose(outer.to_scene, placement_frame(character.placement, frame_)), outer.material,
-                      nullptr, &character};
-    parallel_ranges(character.parts.size(), grain_of(character.parts.size(), plan.count),
-                    [&](size_t begin, size_t end) {
-                      for (size_t k = begin; k < end; ++k) {
-                        place_part(character.parts[k], level, first + plan.first[k], plan.material[k]);
-                      }
-                    });
+    const Level level{&outer,         compose(outer.to_scene, placement_frame(character.placement, frame_)),
+                      outer.material, outer.moves || plan.has_keys,
+                      nullptr,        &character};
+    const bool all = !only_moving() || level.moves;
+    const size_t count = all ? character.parts.size() : plan.moving.size();
+    parallel_ranges(count, grain_of(count, plan.count), [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i) {
+        const size_t k = all ? i : plan.moving[i];
+        place_part(character.parts[k], level, first + plan.first[k], plan.material[k]);
+      }
+    });
   }
 
   void place_part(const Part& part, const Level& outer, uint32_t first, uint32_t material) {
-    const Level level{&outer, compose(outer.to_scene, placement_frame(part.placement, frame_)),
-                      outer.material == kOwnMaterials ? material : outer.material, &part, nullptr};
+    const Level level{&outer,
+                      compose(outer.to_scene, placement_frame(part.placement, frame_)),
+                      outer.material == kOwnMaterials ? material : outer.material,
+                      outer.moves || has_keys(part.placement),
+                      &part,
+                      nullptr};
     if (part.character) {
       place_character(*part.character, level, first);
     } else {
@@ -130,6 +149,10 @@ class Placer {
     instance.object = part.object;
     instance.material = level.material;
     instance.lattice_to_scene = compose(level.to_scene, box ? object.unit_cube : object.model);
+    if (only_moving()) {
+      if (same_bits(instance.lattice_to_scene, out_[index].lattice_to_scene)) return;
+      moved_[index] = 1;
+    }
     instance.scene_to_lattice = invert(instance.lattice_to_scene);
     instance.box_scene = placed_box(instance.lattice_to_scene, object.lattice);
     const InverseFrame& back = instance.scene_to_lattice;
@@ -157,6 +180,7 @@ class Placer {
   const Scene& scene_;
   double frame_;
   std::span<Instance> out_;
+  std::span<uint8_t> moved_;
   FirstError errors_;
 };
 
@@ -170,7 +194,7 @@ Result<Expansion> Expansion::of(const Scene& scene, std::span<const Lattice> lat
   uint32_t materials = 0;
   for (uint32_t i = 0; i < scene.characters.size(); ++i) {
     const Character& character = scene.characters[i];
-    CharacterPlan plan;
+    CharacterPlan& plan = out.plans_[i];
     plan.count = counts.of_character[i];
     plan.first.reserve(character.parts.size());
     plan.material.reserve(character.parts.size());
@@ -180,17 +204,60 @@ Result<Expansion> Expansion::of(const Scene& scene, std::span<const Lattice> lat
       plan.material.push_back(part.material ? materials++ : kOwnMaterials);
       first += part.character ? counts.of_character[*part.character] : 1;
     }
-    out.plans_.push_back(std::move(plan));
     if (!character.shown) continue;
     out.roots_.push_back({i, out.count_});
     out.count_ += counts.of_character[i];
+  }
+  for (const Root& root : out.roots_) {
+    out.find_moving(root.character);
+    if (!out.plans_[root.character].moves()) continue;
+    out.moving_roots_.push_back(root);
+    out.list_moving(root.character, root.first);
   }
   for (const Lattice& lattice : lattices) out.objects_.push_back({lattice.frame(), unit_cube_frame(lattice), lattice});
   return out;
 }
 
+/// Fills in what moves in a character's plan and in those below it, once each.
+void Expansion::find_moving(uint32_t index) {
+  CharacterPlan& plan = plans_[index];
+  if (std::exchange(plan.searched, true)) return;
+  const Character& character = scene_->characters[index];
+  plan.has_keys = has_keys(character.placement);
+  for (uint32_t k = 0; k < character.parts.size(); ++k) {
+    const Part& part = character.parts[k];
+    if (part.character) find_moving(*part.character);
+    if (has_keys(part.placement) || (part.character && plans_[*part.character].moves())) plan.moving.push_back(k);
+  }
+}
+
+void Expansion::list_moving(uint32_t index, uint32_t first) {
+  const CharacterPlan& plan = plans_[index];
+  if (plan.has_keys) return list_moving({first, plan.count});
+  for (const uint32_t k : plan.moving) {
+    const Part& part = scene_->characters[index].parts[k];
+    if (part.character && !has_keys(part.placement)) {
+      list_moving(*part.character, first + plan.first[k]);
+    } else {
+      list_moving({first + plan.first[k], part.character ? plans_[*part.character].count : 1});
+    }
+  }
+}
+
+void Expansion::list_moving(Range range) {
+  if (!moving_.empty() && moving_.back().first + moving_.back().count == range.first) {
+    moving_.back().count += range.count;
+  } else {
+    moving_.push_back(range);
+  }
+}
+
 Result<void> Expansion::place_all(double frame, std::span<Instance> out) const {
-  return Placer(*this, frame, out).place();
+  return Placer(*this, frame, out, {}).place();
+}
+
+Result<void> Expansion::place_moving(double frame, std::span<Instance> out, std::span<uint8_t> moved) const {
+  return moving_.empty() ? Result<void>() : Placer(*this, frame, out, moved).place();
 }
 
 }  // namespace kd::scene

@@ -1,50 +1,293 @@
+// Binned building after Wald, "On fast construction of SAH-based bounding volume hierarchies", 2007: boxes are sorted
+// into bins by their centres, and the cuts between bins are compared. The nodes do not depend on the number of threads:
+// where a subtree's nodes lie follows from how many leaves are before it.
+#include "scene/hierarchy.h"
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "core/sah.h"
-#include "scene/instances.h"
+#include "sys/parallel.h"
 
 namespace kd::scene {
 
 namespace {
 
-constexpr int kSahDepth = 32;  // from here on halves, so that no input outgrows kMaxHierarchyDepth
+constexpr int kMaxBins = 32;
+constexpr size_t kMaxExhaustive = 12;         // so few leaves are sorted, and every cut is compared
+constexpr int kSahDepth = 32;                 // from here on halves, so that no input outgrows kMaxHierarchyDepth
+constexpr size_t kParallelHalves = 2048;      // leaves from which on two threads may build the halves
+constexpr size_t kParallelBinning = 1 << 17;  // and several fill the bins
+constexpr size_t kBinGrain = 1 << 14;
+static_assert(kSahDepth + 27 <= kMaxHierarchyDepth, "2^26 instances halve in 26 levels");
 
-class HierarchyBuilder {
- public:
-  explicit HierarchyBuilder(std::span<const Instance> instances) : instances_(instances), order_(instances.size()) {
-    std::iota(order_.begin(), order_.end(), 0u);
+/// A box as how far it reaches along -x, -y, -z, x, y and z: it grows by one maximum of all six. Empty at first.
+struct Reach {
+  static constexpr double kNowhere = std::numeric_limits<double>::lowest();
+  std::array<double, 6> way{kNowhere, kNowhere, kNowhere, kNowhere, kNowhere, kNowhere};
+
+  Reach() = default;
+  explicit Reach(const Box3d& box) : way{-box.lo.x, -box.lo.y, -box.lo.z, box.hi.x, box.hi.y, box.hi.z} {}
+
+  void extend(const Reach& other) {
+    for (size_t i = 0; i < 6; ++i) way[i] = way[i] < other.way[i] ? other.way[i] : way[i];
   }
+  double half_area() const { return kd::half_area({way[3] + way[0], way[4] + way[1], way[5] + way[2]}); }
+  double centre(int axis) const {
+    const auto i = static_cast<size_t>(axis);
+    return way[i + 3] * 0.5 - way[i] * 0.5;
+  }
+  Vec3d centre() const { return {centre(0), centre(1), centre(2)}; }
+  Vec3d lo() const { return {-way[0], -way[1], -way[2]}; }
+  Vec3d hi() const { return {way[3], way[4], way[5]}; }
+};
 
-  std::vector<HierarchyNode> take() {
-    nodes_.emplace_back();
-    build(0, 0, order_.size(), 0);
-    return std::move(nodes_);
+struct Entry {
+  Reach reach;
+  uint32_t instance;
+};
+
+/// Leaves [begin, end), under a node that is to be made.
+struct Task {
+  size_t begin, end;
+  Box3d centres;   // of the leaves' boxes
+  uint32_t slot;   // the node
+  uint32_t below;  // the first of the 2 (end - begin) - 2 nodes below it
+  int depth;
+
+  size_t count() const { return end - begin; }
+  /// More would be empty.
+  int bins() const { return count() < 64 ? 8 : count() < 512 ? 16 : kMaxBins; }
+};
+
+struct Bin {
+  Reach reach;
+  size_t count = 0;
+
+  void add(const Bin& other) {
+    reach.extend(other.reach);
+    count += other.count;
+  }
+};
+
+/// Which bin a centre falls into, along each axis. An axis along which centres do not differ has one.
+class Binning {
+ public:
+  Binning(const Box3d& centres, int bins) : last_(bins - 1) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const double range = centres.hi[axis] - centres.lo[axis], scale = bins / range;
+      if (!std::isfinite(range) || !std::isfinite(scale)) continue;
+      lo_.set(axis, centres.lo[axis]);
+      scale_.set(axis, scale);
+    }
+  }
+  int bin(const Entry& entry, int axis) const {
+    return std::min(static_cast<int>((entry.reach.centre(axis) - lo_[axis]) * scale_[axis]), last_);
   }
 
  private:
-  const Box3d& box(size_t position) const { return instances_[order_[position]].box_scene; }
-  Vec3d centre(uint32_t instance) const {
-    const Box3d& b = instances_[instance].box_scene;
-    return (b.lo + b.hi) * 0.5;
-  }
-  void sort_along(int axis, size_t begin, size_t end) {
-    std::sort(order_.begin() + static_cast<std::ptrdiff_t>(begin), order_.begin() + static_cast<std::ptrdiff_t>(end),
-              [&](uint32_t a, uint32_t b) {
-                const double ca = centre(a)[axis], cb = centre(b)[axis];
-                return ca != cb ? ca < cb : a < b;
-              });
-  }
-  void build(size_t slot, size_t begin, size_t end, int depth);
-  size_t best_middle(size_t begin, size_t end);
-
-  std::span<const Instance> instances_;
-  std::vector<uint32_t> order_;
-  std::vector<HierarchyNode> nodes_;
-  std::vector<double> right_area_;
+  Vec3d lo_, scale_;
+  int last_;
 };
+
+/// A cut between leaves; in front of leaf `position` for sorted ones, behind bin `position` for binned ones.
+struct Cut {
+  double cost = std::numeric_limits<double>::infinity();
+  int axis = 0;
+  size_t position = 0;
+
+  bool exists() const { return cost < std::numeric_limits<double>::infinity(); }
+  void improve(const Cut& other) {
+    if (other.cost < cost) *this = other;
+  }
+};
+
+/// Rows of bins, one an axis.
+struct Bins {
+  explicit Bins(int used) : count(static_cast<size_t>(used)) {
+    for (auto& row : rows) std::fill_n(row.begin(), count, Bin{});
+  }
+  size_t count;
+  std::array<std::array<Bin, kMaxBins>, 3> rows;
+};
+
+Cut best_cut(const Bins& bins) {
+  Cut best;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto& row = bins.rows[static_cast<size_t>(axis)];
+    std::array<double, kMaxBins> right_cost;  // of the bins from i on
+    Bin right;
+    for (size_t i = bins.count; i-- > 1;) {
+      right.add(row[i]);
+      right_cost[i] = right.reach.half_area() * static_cast<double>(right.count);
+    }
+    const size_t all = right.count + row[0].count;
+    Bin left;
+    for (size_t i = 0; i + 1 < bins.count; ++i) {
+      if (row[i].count == 0) continue;  // the cut before it is the same
+      left.add(row[i]);
+      if (left.count == all) break;
+      best.improve({left.reach.half_area() * static_cast<double>(left.count) + right_cost[i + 1], axis, i});
+    }
+  }
+  return best;
+}
+
+class HierarchyBuilder {
+ public:
+  HierarchyBuilder(std::span<const Instance> instances, std::span<HierarchyNode> nodes)
+      : entries_(instances.size()), nodes_(nodes) {
+    parallel_ranges(instances.size(), kBinGrain, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i)
+        entries_[i] = {Reach(widened(instances[i].box_scene)), static_cast<uint32_t>(i)};
+    });
+  }
+
+  void build_all() {
+    Task root{0, entries_.size(), {}, 0, 1, 0};
+    for (size_t i = 0; i < entries_.size(); ++i) root.centres.extend(entries_[i].reach.centre());
+    build(root);
+  }
+
+ private:
+  void build(const Task& task);
+  size_t divide(const Task& task, Box3d& left, Box3d& right);
+  size_t divide_sorted(const Task& task, Box3d& left, Box3d& right);
+  size_t halve(const Task& task, Box3d& left, Box3d& right);
+  void fill(const Task& task, const Binning& binning, Bins& bins) const;
+  template <class IsLeft>
+  size_t partition(const Task& task, Box3d& left, Box3d& right, const IsLeft& is_left);
+
+  HugeArray<Entry> entries_;
+  std::span<HierarchyNode> nodes_;
+};
+
+void HierarchyBuilder::build(const Task& task) {
+  HierarchyNode& node = nodes_[task.slot];
+  if (task.count() == 1) {
+    const Entry& entry = entries_[task.begin];
+    node = {entry.reach.lo(), entry.reach.hi(), entry.instance, 1};
+    return;
+  }
+  Box3d left_centres, right_centres;
+  size_t middle = task.begin;
+  if (task.depth < kSahDepth) {
+    middle = task.count() <= kMaxExhaustive ? divide_sorted(task, left_centres, right_centres)
+                                            : divide(task, left_centres, right_centres);
+  }
+  if (middle == task.begin) middle = halve(task, left_centres, right_centres);
+  const uint32_t child = task.below;
+  const Task left{task.begin, middle, left_centres, child, child + 2, task.depth + 1};
+  const auto left_below = static_cast<uint32_t>(hierarchy_size(left.count()) - 1);
+  const Task right{middle, task.end, right_centres, child + 1, child + 2 + left_below, task.depth + 1};
+  if (task.count() >= kParallelHalves) {
+    parallel_tasks([&] { build(left); }, [&] { build(right); });
+  } else {
+    build(left);
+    build(right);
+  }
+  Box3d box{nodes_[child].lo, nodes_[child].hi};
+  box.extend(Box3d{nodes_[child + 1].lo, nodes_[child + 1].hi});
+  node = {box.lo, box.hi, child, 0};
+}
+
+/// Reorders the task's leaves so that those of the left half come first, and returns where the right ones begin. The
+/// beginning, if no cut tells the leaves apart.
+size_t HierarchyBuilder::divide(const Task& task, Box3d& left, Box3d& right) {
+  const Binning binning(task.centres, task.bins());
+  Bins bins(task.bins());
+  fill(task, binning, bins);
+  const Cut cut = best_cut(bins);
+  if (!cut.exists()) return task.begin;
+  return partition(task, left, right,
+                   [&](const Entry& e) { return binning.bin(e, cut.axis) <= static_cast<int>(cut.position); });
+}
+
+void HierarchyBuilder::fill(const Task& task, const Binning& binning, Bins& bins) const {
+  const auto fill_range = [&](size_t begin, size_t end, Bins& out) {
+    for (size_t i = begin; i < end; ++i) {
+      for (int axis = 0; axis < 3; ++axis) {
+        Bin& bin = out.rows[static_cast<size_t>(axis)][static_cast<size_t>(binning.bin(entries_[i], axis))];
+        bin.reach.extend(entries_[i].reach);
+        ++bin.count;
+      }
+    }
+  };
+  if (task.count() < kParallelBinning) return fill_range(task.begin, task.end, bins);
+  PerThread<Bins> parts{Bins(task.bins())};
+  parallel_ranges(task.count(), kBinGrain,
+                  [&](size_t begin, size_t end) { fill_range(task.begin + begin, task.begin + end, parts.local()); });
+  for (const Bins& part : parts) {
+    for (size_t axis = 0; axis < 3; ++axis) {
+      for (size_t i = 0; i < bins.count; ++i) bins.rows[axis][i].add(part.rows[axis][i]);
+    }
+  }
+}
+
+template <class IsLeft>
+size_t HierarchyBuilder::partition(const Task& task, Box3d& left, Box3d& right, const IsLeft& is_left) {
+  size_t i = task.begin, j = task.end;
+  while (i < j) {
+    if (is_left(entries_[i])) {
+      left.extend(entries_[i++].reach.centre());
+    } else {
+      right.extend(entries_[i].reach.centre());
+      std::swap(entries_[i], entries_[--j]);
+    }
+  }
+  return i;
+}
+
+/// `divide` for few leaves: every cut along every axis.
+size_t HierarchyBuilder::divide_sorted(const Task& task, Box3d& left, Box3d& right) {
+  const size_t count = task.count();
+  std::array<std::array<uint8_t, kMaxExhaustive>, 3> orders;
+  std::array<Entry, kMaxExhaustive> entries;
+  std::copy_n(entries_.data() + task.begin, count, entries.begin());
+  Cut best;
+  for (int axis = 0; axis < 3; ++axis) {
+    auto& order = orders[static_cast<size_t>(axis)];
+    std::array<double, kMaxExhaustive> keys;
+    for (size_t i = 0; i < count; ++i) {  // by insertion
+      const double key = entries[i].reach.centre(axis);
+      size_t at = i;
+      for (; at > 0 && key < keys[at - 1]; --at) {
+        keys[at] = keys[at - 1];
+        order[at] = order[at - 1];
+      }
+      keys[at] = key;
+      order[at] = static_cast<uint8_t>(i);
+    }
+    std::array<double, kMaxExhaustive> right_cost;
+    Reach reach;
+    for (size_t i = count; i-- > 1;) {
+      reach.extend(entries[order[i]].reach);
+      right_cost[i] = reach.half_area() * static_cast<double>(count - i);
+    }
+    reach = {};
+    for (size_t i = 1; i < count; ++i) {
+      reach.extend(entries[order[i - 1]].reach);
+      best.improve({reach.half_area() * static_cast<double>(i) + right_cost[i], axis, i});
+    }
+  }
+  if (!best.exists()) return task.begin;
+  for (size_t i = 0; i < count; ++i) {
+    const Entry& entry = entries[orders[static_cast<size_t>(best.axis)][i]];
+    entries_[task.begin + i] = entry;
+    (i < best.position ? left : right).extend(entry.reach.centre());
+  }
+  return task.begin + best.position;
+}
+
+size_t HierarchyBuilder::halve(const Task& task, Box3d& left, Box3d& right) {
+  const size_t middle = task.begin + task.count() / 2;
+  for (size_t i = task.begin; i < task.end; ++i) (i < middle ? left : right).extend(entries_[i].reach.centre());
+  return middle;
+}
+
+}  // namespace
 
 Box3d widened(const Box3d& box) {
   const auto margin = [](double c) { return 1e-12 * std::fabs(c) + std::numeric_limits<double>::min(); };
@@ -53,56 +296,14 @@ Box3d widened(const Box3d& box) {
           {hi.x + margin(hi.x), hi.y + margin(hi.y), hi.z + margin(hi.z)}};
 }
 
-/// Leaves [begin, end) sorted along the best axis and returns where to cut.
-size_t HierarchyBuilder::best_middle(size_t begin, size_t end) {
-  double best_cost = std::numeric_limits<double>::infinity();
-  int best_axis = 0;
-  size_t best = begin + (end - begin) / 2;
-  right_area_.resize(end - begin);
-  for (int axis = 0; axis < 3; ++axis) {
-    sort_along(axis, begin, end);
-    Box3d right;
-    for (size_t i = end; i-- > begin + 1;) {
-      right.extend(box(i));
-      right_area_[i - begin] = half_area(right.extent());
-    }
-    Box3d left;
-    for (size_t i = begin + 1; i < end; ++i) {
-      left.extend(box(i - 1));
-      const double cost = half_area(left.extent()) * static_cast<double>(i - begin) +
-                          right_area_[i - begin] * static_cast<double>(end - i);
-      if (cost < best_cost) {
-        best_cost = cost;
-        best_axis = axis;
-        best = i;
-      }
-    }
-  }
-  if (best_axis != 2) sort_along(best_axis, begin, end);
-  return best;
+void build_hierarchy(std::span<const Instance> instances, std::span<HierarchyNode> nodes) {
+  if (!instances.empty()) HierarchyBuilder(instances, nodes).build_all();
 }
-
-void HierarchyBuilder::build(size_t slot, size_t begin, size_t end, int depth) {
-  Box3d bounds;
-  for (size_t i = begin; i < end; ++i) bounds.extend(box(i));
-  bounds = widened(bounds);
-  if (end - begin == 1) {
-    nodes_[slot] = {bounds.lo, bounds.hi, order_[begin], 1};
-    return;
-  }
-  const size_t middle = depth < kSahDepth ? best_middle(begin, end) : begin + (end - begin) / 2;
-  const size_t child = nodes_.size();
-  nodes_[slot] = {bounds.lo, bounds.hi, static_cast<uint32_t>(child), 0};
-  nodes_.resize(child + 2);
-  build(child, begin, middle, depth + 1);
-  build(child + 1, middle, end, depth + 1);
-}
-
-}  // namespace
 
 std::vector<HierarchyNode> build_hierarchy(std::span<const Instance> instances) {
-  if (instances.empty()) return {};
-  return HierarchyBuilder(instances).take();
+  std::vector<HierarchyNode> nodes(hierarchy_size(instances.size()));
+  build_hierarchy(instances, nodes);
+  return nodes;
 }
 
 }  // namespace kd::scene

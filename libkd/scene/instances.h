@@ -35,9 +35,10 @@ std::vector<Material> override_materials(const Scene& scene);
 Result<std::vector<Instance>> place_instances(const Scene& scene, std::span<const Lattice> lattices,
                                               double frame = kDefaultFrame);
 
-/// A tree of boxes over the instances: node 0 is the root, a leaf holds one instance, children follow their parents.
-/// Split by the surface area heuristic over box centres, exhaustively; no deeper than kMaxHierarchyDepth. Empty for no
-/// instances. Boxes are widened by 1e-12 of their coordinates, more than the ray test's rounding.
+/// A tree of boxes over the instances: node 0 is the root, a leaf holds one instance, the two children of a node lie
+/// side by side and behind it. Split by the surface area heuristic over box centres, in bins; no deeper than
+/// kMaxHierarchyDepth. Empty for no instances. Boxes are widened by 1e-12 of their coordinates, more than the ray
+/// test's rounding. The same nodes for any number of threads. May throw std::bad_alloc.
 std::vector<HierarchyNode> build_hierarchy(std::span<const Instance> instances);
 
 }  // namespace kd::scene
