@@ -82,7 +82,7 @@ void load_lights(const std::vector<scene::Light>& lights, LoadedScene& loaded) {
       ++loaded.skipped.shadow_launches;
       continue;
     }
-    const bool point = light.kind == scene::LightKind::point;
+    const bool point = light.kind != scene::LightKind::directional;
     loaded.lights.push_back({point ? light.position : -light.direction, light.colour, point ? 1u : 0u});
   }
 }

@@ -6,8 +6,9 @@ namespace kd::scene {
 
 namespace {
 
-/// The hierarchy is built again once refitting has made its nodes' surface so many times what it was. At 1.5 random rays
-/// pass a third more nodes than in a fresh one, at 2 two thirds, at 5 four times as many (200,000 instances adrift).
+/// The hierarchy is built again once refitting has made its nodes' surface so many times what it was. At 1.5 random
+/// rays pass a third more nodes than in a fresh one, at 2 two thirds, at 5 four times as many (200,000 instances
+/// adrift).
 constexpr double kMaxGrowth = 1.5;
 
 Error out_of_memory(const Scene& scene) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <variant>
@@ -50,7 +51,10 @@ struct Camera {
   Interpolation interpolation = Interpolation::linear;
 };
 
-enum class LightKind : uint8_t { point, directional };
+enum class LightKind : uint8_t { point, directional, spot };
+
+/// What the distance d does to a light: nothing, as in the paper, or colour / d^2.
+enum class Falloff : uint8_t { none, inverse_square };
 
 struct LightKey {
   double frame = 0;
@@ -61,9 +65,17 @@ struct LightKey {
 
 struct Light {
   LightKind kind = LightKind::point;
-  Vec3d position{0, 0, 0};    // scene space; of a point light
-  Vec3d direction{0, -1, 0};  // the way the light travels, length 1; of a directional one
+  Vec3d position{0, 0, 0};    // scene space; of a point or spot light
+  Vec3d direction{0, -1, 0};  // the way the light travels, length 1; of a directional or spot light
   Vec3f colour{1, 1, 1};      // >= 0
+  // Of a spot light: s^2 (3 - 2s) of its light arrives at an angle a from its direction, s = saturate((cos a - cos
+  // outer) / (cos inner - cos outer)); all or nothing if the two are the same. 0 <= inner <= outer <= 180, 0 < outer.
+  double inner_degrees = 0;
+  double outer_degrees = 45;
+  // Of a point or spot light. A reach, > 0, is a window: saturate(1 - (d / reach)^4)^2 of the light arrives, nothing
+  // from there on (Karis, "Real shading in Unreal Engine 4", 2013).
+  Falloff falloff = Falloff::none;
+  double reach = std::numeric_limits<double>::infinity();
   std::vector<LightKey> keys = {};
   Interpolation interpolation = Interpolation::linear;
 };

@@ -47,6 +47,8 @@ class Reader {
   void read_camera(const scene_fb::Camera& source);
   void check_camera();
   Light read_light(const scene_fb::Light& source, const std::string& at);
+  void read_light_motion(const scene_fb::Light& source, const std::string& at, Light& light);
+  void read_light_shape(const scene_fb::Light& source, const std::string& at, Light& light);
   Vec3d read_direction(const scene_fb::Vec3& source, const std::string& at);
   /// `read_fields(source key, path, key)` reads what is not the frame.
   template <class Key, class Sources, class ReadFields>

@@ -233,10 +233,17 @@ std::string Writer::motion(const Moving& moving) {
 }
 
 void Writer::put_light(const Light& light) {
-  const bool is_point = light.kind == LightKind::point;
-  put(R"({{"kind": "{}", "{}": {}, "colour": {}{}}})", is_point ? "point" : "directional",
-      is_point ? "position" : "direction", vector(is_point ? light.position : light.direction), vector(light.colour),
-      motion(light));
+  const bool has_position = light.kind != LightKind::directional, has_direction = light.kind != LightKind::point;
+  put(R"({{"kind": "{}")", !has_position ? "directional" : has_direction ? "spot" : "point");
+  if (has_position) put(", \"position\": {}", vector(light.position));
+  if (has_direction) put(", \"direction\": {}", vector(light.direction));
+  put(", \"colour\": {}", vector(light.colour));
+  if (has_position && has_direction) {
+    put(R"(, "inner_angle": {}, "outer_angle": {})", number(light.inner_degrees), number(light.outer_degrees));
+  }
+  if (has_position && light.falloff == Falloff::inverse_square) put(R"(, "falloff": "inverse_square")");
+  if (has_position && std::isfinite(light.reach)) put(", \"reach\": {}", number(light.reach));
+  put("{}}}", motion(light));
 }
 
 void Writer::put_object(const SceneObject& object) {

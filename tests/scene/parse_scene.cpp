@@ -1,6 +1,7 @@
 // Scene files: what is read from a good one, the defaults, and for each kind of bad one, where the error points.
 #include "scene/parse_scene.h"
 
+#include <limits>
 #include <string>
 
 #include <doctest/doctest.h>
@@ -176,7 +177,7 @@ const BadScene kBadScenes[] = {
     {"[1, 2, 3]", "[\"1\", 2, 3]", "3:27", "'position[0]' must be a number, not a string"},
     {"\"position\": [1, 2, 3], ", "", "3:13", "'camera' lacks 'position'"},
     {", \"file\": \"compiled/bay.nkd\"", "", "9:15", "'objects[0]' lacks 'file'"},
-    {"\"point\"", "\"spot\"", "6:14", "'kind' must be \"point\" or \"directional\", not \"spot\""},
+    {"\"point\"", "\"area\"", "6:14", "'kind' must be \"point\" or \"directional\" or \"spot\", not \"area\""},
     {"\"point\"", "\"point directional\"", "6:14", "'kind' must be"},
     {"\"point\"", "1", "6:14", "not a number"},
     {"\"bay 1 left\"", "7", "12:16", "'name' must be a string, not a number"},
@@ -195,6 +196,12 @@ const BadScene kBadScenes[] = {
     {"\"position\": [4, 5, 6], ", "", "6:5", "a point light needs a 'position'"},
     {"\"direction\"", "\"position\"", "7:41", "a directional light has no 'position'"},
     {"[0, -2, 0]", "[0, 0, 0]", "7:42", "must not be zero"},
+    {"\"point\"", "\"spot\"", "6:5", "a spot light needs a 'direction'"},
+    {"[10, 10, 9]", "[10, 10, 9], \"inner_angle\": 5", "6:84", "a point light has no 'inner_angle'"},
+    {"[10, 10, 9]", "[10, 10, 9], \"reach\": 0", "6:78", "'reach' must be more than 0"},
+    {"[10, 10, 9]", "[10, 10, 9], \"falloff\": \"linear\"", "6:80", "'falloff' must be \"none\" or \"inverse_square\""},
+    {"[1, 1, 1]}", "[1, 1, 1], \"reach\": 5}", "7:84", "a directional light has no 'reach'"},
+    {"[1, 1, 1]}", "[1, 1, 1], \"falloff\": \"inverse_square\"}", "7:86", "a directional light has no 'falloff'"},
     {"[10, 10, 9]", "[10, 10, -9]", "6:56", "from 0 to"},
     {"\"alt\\u00e4r\"", "\"bay\"", "9:69", "two objects 'bay'"},
     {"\"name\": \"bay\"", "\"name\": \"\"", "9:24", "'name' must not be empty"},
@@ -225,6 +232,43 @@ TEST_CASE("scene: every error says what is wrong and where") {
     CHECK(scene.error().where == fmt::format("dir/scene.json:{}", bad.where));
     CHECK_MESSAGE(scene.error().what.find(bad.what) != std::string::npos, scene.error().what);
   }
+}
+
+TEST_CASE("scene: spot lights, falloff and reach") {
+  const auto read = [](const std::string& light) {
+    return parse_scene(
+        replaced(kSmallest, "\"objects\"", "\"lights\": [{\"colour\": [1, 1, 1], " + light + "}],\n\"objects\""), "s");
+  };
+  const std::string spot = R"("kind": "spot", "position": [1, 2, 3], "direction": [0, 0, 2])";
+  const auto full = read(spot + R"(, "inner_angle": 10, "outer_angle": 20.5, "falloff": "inverse_square", "reach": 7)");
+  REQUIRE(full);
+  const Light& light = full->lights.at(0);
+  CHECK(light.kind == LightKind::spot);
+  CHECK(light.position == Vec3d{1, 2, 3});
+  CHECK(light.direction == Vec3d{0, 0, 1});
+  CHECK(light.inner_degrees == 10);
+  CHECK(light.outer_degrees == 20.5);
+  CHECK(light.falloff == Falloff::inverse_square);
+  CHECK(light.reach == 7);
+  const auto point = read(R"("kind": "point", "position": [0, 0, 0])");
+  REQUIRE(point);
+  CHECK(point->lights[0].falloff == Falloff::none);
+  CHECK(point->lights[0].reach == std::numeric_limits<double>::infinity());
+  CHECK(read(spot + R"(, "inner_angle": 0, "outer_angle": 180)"));
+  CHECK(read(spot + R"(, "inner_angle": 30, "outer_angle": 30)"));
+  const auto error_of = [&](const std::string& angles) {
+    const auto bad = read(spot + angles);
+    REQUIRE(!bad);
+    return bad.error().what;
+  };
+  CHECK(error_of("") == "a spot light needs an 'inner_angle' and an 'outer_angle'");
+  CHECK(error_of(R"(, "inner_angle": 5)") == "a spot light needs an 'inner_angle' and an 'outer_angle'");
+  CHECK(error_of(R"(, "inner_angle": 31, "outer_angle": 30)") == "'inner_angle' must be from 0 to 'outer_angle'");
+  CHECK(error_of(R"(, "inner_angle": -1, "outer_angle": 30)") == "'inner_angle' must be from 0 to 'outer_angle'");
+  CHECK(error_of(R"(, "inner_angle": 0, "outer_angle": 0)") ==
+        "'outer_angle' must be more than 0 and at most 180 degrees");
+  CHECK(error_of(R"(, "inner_angle": 0, "outer_angle": 181)") ==
+        "'outer_angle' must be more than 0 and at most 180 degrees");
 }
 
 TEST_CASE("scene: texts that are no scene at all") {

@@ -31,6 +31,7 @@ Scene full_scene(const test::TempFolder& folder) {
   s.ambient = {1.17549435e-38f, 1e-45f, 16777216};
   s.lights.push_back({LightKind::point, {1, 2, 0.1}, {0, -1, 0}, {1, 0.3f, 0}});
   s.lights.push_back({LightKind::directional, {0, 0, 0}, {0, 0, -1}, {0, 0, 0}});
+  s.lights.push_back({LightKind::spot, {1, 2, 3}, {0, 1, 0}, {3, 0, 0}, 0.1, 179.9, Falloff::inverse_square, 0.3});
   s.objects = {{"cube", folder.file("compiled/cube.nkd")},
                {"unused \"one\" \\ of 東", folder.file("u \"q\" \\ 東.nkd")}};
   Part box, frame, moved, turned, plain;
@@ -135,9 +136,15 @@ TEST_CASE("write_scene: everything is read back as it was") {
     CHECK(r.lights[i].kind == s.lights[i].kind);
     CHECK(r.lights[i].colour == s.lights[i].colour);
     CHECK(same_motion(r.lights[i], s.lights[i]));
+    CHECK(r.lights[i].falloff == s.lights[i].falloff);
+    CHECK(r.lights[i].reach == s.lights[i].reach);
   }
   CHECK(r.lights[0].position == s.lights[0].position);
   CHECK(r.lights[1].direction == s.lights[1].direction);
+  CHECK(r.lights[2].position == s.lights[2].position);
+  CHECK(r.lights[2].direction == s.lights[2].direction);
+  CHECK(r.lights[2].inner_degrees == s.lights[2].inner_degrees);
+  CHECK(r.lights[2].outer_degrees == s.lights[2].outer_degrees);
   REQUIRE(r.objects.size() == s.objects.size());
   for (size_t i = 0; i < s.objects.size(); ++i) {
     CHECK(r.objects[i].name == s.objects[i].name);
