@@ -3,56 +3,46 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include <flatbuffers/reflection_generated.h>
 #include <fmt/format.h>
 
+#include "scene/json_shape.h"
+
 namespace kd::scene {
 
 namespace {
 
-/// What the schema expects of a value: reflection::Type without its vector, so that elements have one too.
-struct Shape {
-  reflection::BaseType base;
-  reflection::BaseType element;  // of a vector
-  int index;                     // of the table, struct or enumeration; -1 if none
-};
-
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_word(char c) { return is_digit(c) || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
-
-const reflection::Field* find_field(const reflection::Object& type, std::string_view name) {
-  for (const reflection::Field* field : *type.fields()) {
-    if (field->name()->string_view() == name) return field;
-  }
-  return nullptr;
-}
-
-std::string field_names(const reflection::Object& type) {
-  std::string names;
-  for (const reflection::Field* field : *type.fields()) names += (names.empty() ? "" : ", ") + field->name()->str();
-  return names;
-}
 
 /// A recursive descent over the text, guided by the schema. Functions return false once a fault is recorded. The schema
 /// is not recursive and nothing unknown is descended into, so the depth is bounded.
 class Scanner {
  public:
-  Scanner(std::string_view json, const reflection::Schema& schema, const JsonVisitor& visit)
-      : json_(json), schema_(schema), visit_(visit) {
+  Scanner(std::string_view json, const reflection::Schema& schema, JsonVisitor visit = {})
+      : json_(json), schema_(schema), visit_(std::move(visit)) {
     if (json_.starts_with("\xEF\xBB\xBF")) line_start_ = at_ = 3;
   }
 
-  std::optional<JsonFault> scan() {
-    if (value({reflection::Obj, reflection::None, root_index()}) && !at_end()) {
-      fail(fmt::format("{} after the end of the scene", found()));
-    }
+  std::optional<JsonFault> scan() { return scan(root_shape(schema_), "the scene"); }
+  std::optional<JsonFault> scan(const Shape& shape, std::string_view name) {
+    name_ = name;
+    if (value(shape) && !at_end()) fail(fmt::format("{} after the end of {}", found(), name));
     return fault_;
+  }
+  /// Where the value at `path` stands.
+  std::optional<JsonSpan> find(std::string_view path) {
+    wanted_ = path;
+    scan();
+    return span_;
   }
 
  private:
   bool value(const Shape& shape);
+  bool value_here(const Shape& shape);
   bool table(const reflection::Object& type);
   bool field(const reflection::Object& type, std::vector<std::string_view>& seen);
   bool array(const Shape& element, size_t wanted_count);
@@ -62,7 +52,6 @@ class Scanner {
   bool truth();
   bool string(std::string_view& content);
 
-  int root_index() const;
   void skip_space();
   bool at_end() {
     skip_space();
@@ -82,16 +71,26 @@ class Scanner {
 
   std::string_view json_;
   const reflection::Schema& schema_;
-  const JsonVisitor& visit_;
+  const JsonVisitor visit_;
   size_t at_ = 0;
   int line_ = 1;
   size_t line_start_ = 0;
   std::string path_;
+  std::string_view name_;  // of what is scanned
+  std::optional<std::string_view> wanted_;
+  std::optional<JsonSpan> span_;
   std::optional<JsonFault> fault_;
 };
 
 bool Scanner::value(const Shape& shape) {
   skip_space();
+  const size_t begin = at_;
+  const bool good = value_here(shape);
+  if (good && wanted_ && path_ == *wanted_) span_ = JsonSpan{begin, at_};
+  return good;
+}
+
+bool Scanner::value_here(const Shape& shape) {
   const auto index = static_cast<flatbuffers::uoffset_t>(shape.index);
   const reflection::Object* object = shape.base == reflection::Obj ? schema_.objects()->Get(index) : nullptr;
   const bool is_table = object && !object->is_struct();
@@ -270,14 +269,6 @@ bool Scanner::string(std::string_view& content) {
   return true;
 }
 
-int Scanner::root_index() const {
-  const auto& objects = *schema_.objects();
-  const auto name = schema_.root_table()->name()->string_view();
-  return static_cast<int>(std::find_if(objects.begin(), objects.end(),
-                                       [&](const reflection::Object* o) { return o->name()->string_view() == name; }) -
-                          objects.begin());
-}
-
 void Scanner::skip_space() {
   for (; peek() == ' ' || peek() == '\t' || peek() == '\r' || peek() == '\n'; ++at_) {
     if (peek() != '\n') continue;
@@ -306,7 +297,7 @@ bool Scanner::fail(Position at, std::string what) {
 }
 
 std::string Scanner::subject() const {
-  if (path_.empty()) return "the scene";
+  if (path_.empty()) return std::string(name_);
   const size_t dot = path_.rfind('.');
   return fmt::format("'{}'", dot == std::string::npos ? path_ : path_.substr(dot + 1));
 }
@@ -332,6 +323,14 @@ std::string Scanner::found() const {
 std::optional<JsonFault> locate_fault(std::string_view json, const reflection::Schema& schema,
                                       const JsonVisitor& visit) {
   return Scanner(json, schema, visit).scan();
+}
+
+std::optional<JsonFault> find_fault(std::string_view value, const reflection::Schema& schema, const Shape& shape) {
+  return Scanner(value, schema).scan(shape, "the value");
+}
+
+std::optional<JsonSpan> find_value(std::string_view json, const reflection::Schema& schema, std::string_view path) {
+  return Scanner(json, schema).find(path);
 }
 
 Position locate(std::string_view json, const reflection::Schema& schema, std::string_view path) {

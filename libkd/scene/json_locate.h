@@ -3,6 +3,7 @@
 // scanner knows the schema as well, refuses what is not strict JSON of its shape, and tells line and column.
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <optional>
 #include <string>
@@ -39,6 +40,15 @@ using JsonVisitor = std::function<void(const JsonValue&)>;
 /// `visit`, if given, is called with the values in the order of the text, up to a fault.
 std::optional<JsonFault> locate_fault(std::string_view json, const reflection::Schema& schema,
                                       const JsonVisitor& visit = {});
+
+/// In bytes of the text.
+struct JsonSpan {
+  size_t begin = 0;
+  size_t end = 0;
+};
+
+/// The value at `path`, if there is one. `json` is without fault.
+std::optional<JsonSpan> find_value(std::string_view json, const reflection::Schema& schema, std::string_view path);
 
 /// Where the value at `path` stands, or, if it is absent, the innermost value around it. `json` is without fault.
 Position locate(std::string_view json, const reflection::Schema& schema, std::string_view path);

@@ -52,21 +52,40 @@ Result<Scene> parse(std::string_view json, const std::string& path) {
   return Reader(json, path, lines).read(source);
 }
 
+/// Where the scene cannot be read, it is asked for first whether it could be without overrides, then with one more
+/// each.
+Result<Scene> parse_changed(std::string_view json, const std::string& path, std::span<const Override> overrides) {
+  if (json.size() > kMaxSceneBytes || locate_fault(json, scene_schema())) return parse(json, path);
+  const auto changed = apply_overrides(std::string(json), overrides);
+  if (!changed) return changed.error();
+  auto scene = parse(*changed, path);
+  if (scene) return scene;
+  if (auto unchanged = parse(json, path); !unchanged) return unchanged;
+  for (size_t count = 1; count <= overrides.size(); ++count) {
+    const auto part = parse(*apply_overrides(std::string(json), overrides.first(count)), path);
+    const Override& last = overrides[count - 1];
+    if (!part) return Error{ErrorClass::usage, fmt::format("{}={}", last.path, last.value), part.error().what};
+  }
+  return scene;
+}
+
 }  // namespace
 
-Result<Scene> parse_scene(std::string_view json, const std::string& path) {
+Result<Scene> parse_scene(std::string_view json, const std::string& path) { return parse_scene(json, path, {}); }
+
+Result<Scene> parse_scene(std::string_view json, const std::string& path, std::span<const Override> overrides) {
   try {
-    return parse(json, path);
+    return overrides.empty() ? parse(json, path) : parse_changed(json, path, overrides);
   } catch (const std::bad_alloc&) {
     return Error{ErrorClass::resource, path, "not enough memory to read the scene"};
   }
 }
 
-Result<Scene> read_scene(const std::string& path) {
+Result<Scene> read_scene(const std::string& path, std::span<const Override> overrides) {
   const auto file = MappedFile::open(path);
   if (!file) return file.error();
   const auto bytes = file->bytes();
-  return parse_scene({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, path);
+  return parse_scene({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, path, overrides);
 }
 
 }  // namespace kd::scene

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <string_view>
 
+#include "scene/override.h"
 #include "scene/scene.h"
 #include "sys/result.h"
 
@@ -18,7 +20,11 @@ constexpr size_t kMaxSceneBytes = size_t{1} << 27;
 /// there is no memory for it. Objects' files are not opened.
 Result<Scene> parse_scene(std::string_view json, const std::string& path);
 
+/// The same with values changed first. ErrorClass::usage, with the override, if it is the first that leaves no scene
+/// where there was one.
+Result<Scene> parse_scene(std::string_view json, const std::string& path, std::span<const Override> overrides);
+
 /// The same of a file; ErrorClass::missing if it cannot be read.
-Result<Scene> read_scene(const std::string& path);
+Result<Scene> read_scene(const std::string& path, std::span<const Override> overrides = {});
 
 }  // namespace kd::scene
