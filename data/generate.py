@@ -39,10 +39,11 @@ def main():
                                            "Sphere of radius 1, written by data/generate.py",
                                            points, triangles))
     print("%-26s %6d triangles %7d bytes" % ("all meshes", total, size))
-    for name, scene in (("cathedral.json", scenes.cathedral()), ("spheres.json", scenes.spheres())):
+    for name, scene in (("cathedral.json", scenes.cathedral()), ("walkthrough.json", scenes.walkthrough()),
+                        ("turntable.json", scenes.turntable()), ("spheres.json", scenes.spheres())):
         scenes.write(os.path.join(HERE, name), scene)
         files = {o["name"]: os.path.splitext(os.path.basename(o["file"]))[0] for o in scene["objects"]}
-        used = [files[p["object"]] for c in scene["characters"] for p in c["parts"]]
+        used = [files[o] for o in scenes.placed(scene)]
         print("%-26s %6d instances, %d triangles as seen" % (
             name, len(used), sum(counts[f] for f in used)))
 

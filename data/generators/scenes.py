@@ -122,6 +122,66 @@ def cathedral():
     }
 
 
+def walkthrough():
+    """The cathedral, walked through from the west door to the altar steps while the pilgrim goes ahead."""
+    scene = cathedral()
+    scene["camera"] = {"up": [0, 1, 0], "vertical_fov": 60, "interpolation": "smooth", "keys": [
+        {"frame": 1, "position": [1.0, 2.9, -1.2], "target": [0.0, 5.0, -26]},
+        {"frame": 80, "position": [0.9, 1.7, -9.5], "target": [-0.2, 2.6, -24]},
+        {"frame": 150, "position": [0.1, 1.65, -18.0], "target": [0.0, 2.4, -32]},
+        {"frame": 240, "position": [0.0, 1.9, -30.5], "target": [0.0, 3.4, -39.2], "vertical_fov": 50}]}
+    # The sun rises a little: the rose creeps along the floor.
+    scene["lights"][0]["keys"] = [{"frame": 1, "direction": [-0.03, -0.39, 0.92]},
+                                  {"frame": 240, "direction": [-0.06, -0.46, 0.88]}]
+    for character in scene["characters"]:
+        if character["name"] == "pilgrim":
+            character["keys"] = [{"frame": 1, "translate": [0, 0, 0]}, {"frame": 200, "translate": [0, 0, -7.2]}]
+    return scene
+
+
+def turntable():
+    """A figure on a plinth that turns once in 240 frames, between two that stand."""
+    def paint(r, g, b):
+        return {"ambient": [r, g, b], "diffuse": [r, g, b], "specular": [0.1] * 3, "shininess": 20}
+
+    figure = [{"name": "robe", "object": "robe"}, {"name": "hood", "object": "hood"},
+              {"name": "face", "object": "icosphere", "translate": [0, 1.645, -0.055], "scale": [0.09, 0.115, 0.095],
+               "material": paint(0.62, 0.4, 0.29)},
+              {"name": "right arm", "object": "arm", "translate": [0.2, 1.36, -0.06],
+               "rotate": {"axis": [1, 0, 0], "degrees": 40}},
+              {"name": "left arm", "object": "arm", "translate": [-0.2, 1.36, -0.02]},
+              {"name": "staff", "object": "staff", "translate": [0.32, 0, -0.33]}]
+    statue = [{"name": "plinth", "object": "plinth"},
+              {"name": "figure", "character": "figure", "translate": [0, 0.96, 0]}]
+    turns = [{"frame": 1, "rotate": {"axis": [0, 1, 0], "degrees": 0}},
+             {"frame": 241, "rotate": {"axis": [0, 1, 0], "degrees": 360}}]
+    files = {"robe": "figure_robe", "hood": "figure_hood", "arm": "figure_arm", "staff": "figure_staff",
+             "plinth": "plinth", "icosphere": "icosphere", "quad": "quad"}
+    return {
+        "film": {"width": 640, "height": 640},
+        "camera": {"position": [0, 2.3, -6.4], "target": [0, 1.35, 0], "up": [0, 1, 0], "vertical_fov": 38},
+        "background": [0.55, 0.6, 0.68],
+        "ambient": [0.16, 0.16, 0.18],
+        "lights": [
+            {"kind": "spot", "position": [-2.5, 5.5, -4], "direction": [2.5, -4.2, 4], "colour": [1, 0.94, 0.84],
+             "inner_angle": 16, "outer_angle": 30},
+            {"kind": "directional", "direction": [0.6, -0.9, 0.4], "colour": [0.22, 0.24, 0.3]}],
+        "objects": [{"name": n, "file": "compiled/%s.nkd" % f} for n, f in files.items()],
+        "characters": [
+            {"name": "figure", "shown": False, "parts": figure},
+            {"name": "statue", "shown": False, "parts": statue},
+            {"name": "floor", "parts": [{"name": "floor", "object": "quad", "scale": [16, 1, 16],
+                                         "material": paint(0.42, 0.4, 0.38)}]},
+            {"name": "turntable", "keys": turns, "parts": [{"name": "statue", "character": "statue"}]},
+            {"name": "bystanders", "parts": [
+                {"name": "left", "character": "statue", "translate": [2.1, 0, 1.4],
+                 "rotate": {"axis": [0, 1, 0], "degrees": 35}, "scale": [0.9, 0.9, 0.9], "material": paint(0.5, 0.45, 0.37)},
+                {"name": "right", "character": "statue", "translate": [-2.1, 0, 1.4],
+                 "rotate": {"axis": [0, 1, 0], "degrees": -35}, "scale": [-0.9, 0.9, 0.9],
+                 "material": paint(0.36, 0.42, 0.47)}]}],
+    }
+
+
 def spheres():
     def paint(r, g, b, specular, shininess):
         return {"ambient": [r, g, b], "diffuse": [r, g, b], "specular": [specular] * 3,
@@ -151,6 +211,16 @@ def spheres():
     }
 
 
+def placed(scene):
+    """The objects that the scene's instances are of."""
+    parts = {c["name"]: c["parts"] for c in scene["characters"]}
+
+    def below(name):
+        return [o for p in parts[name] for o in (below(p["character"]) if "character" in p else [p["object"]])]
+
+    return [o for c in scene["characters"] if c.get("shown", True) for o in below(c["name"])]
+
+
 def write(path, scene):
     """Readable JSON: one line for each part, light and object."""
     def line(value):
@@ -160,8 +230,11 @@ def write(path, scene):
         pad = " " * indent
         return "[\n" + ",\n".join(pad + "  " + item for item in items) + "\n" + pad + "]"
 
-    characters = ['{"name": %s, "parts": %s}' % (line(c["name"]), block([line(p) for p in c["parts"]], 4))
-                  for c in scene["characters"]]
+    def character(c):
+        members = ["%s: %s" % (line(key), line(value)) for key, value in c.items() if key != "parts"]
+        return "{%s}" % ", ".join(members + ['"parts": ' + block([line(p) for p in c["parts"]], 4)])
+
+    characters = [character(c) for c in scene["characters"]]
     text = ["  %s: %s" % (line(key), line(scene[key])) for key in ("film", "camera", "background", "ambient")]
     text.append('  "lights": ' + block([line(v) for v in scene["lights"]], 2))
     text.append('  "objects": ' + block([line(v) for v in scene["objects"]], 2))
