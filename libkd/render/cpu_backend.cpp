@@ -33,7 +33,9 @@ uint64_t for_each_pixel(const Stage& stage, size_t pixels, SharedProgress& progr
 class CpuRenderer final : public Renderer {
  public:
   CpuRenderer(const LoadedScene& scene, const RenderSettings& settings)
-      : scene_(scene), settings_(settings), objects_(scene), instances_(instance_views(scene)) {
+      : scene_(scene), settings_(settings), objects_(scene) {
+    instances_.reserve(scene.instances.size());
+    for (const scene::Instance& instance : scene.instances) instances_.push_back(instance_view(instance));
     holding_.upload_seconds = opening_.seconds();
     for (const LoadedObject& object : scene.objects) holding_.object_bytes += object_bytes(object);
     holding_.scene_bytes = instances_.size() * sizeof(InstanceView) + scene.hierarchy.size() * sizeof(HierarchyNode) +
@@ -43,6 +45,10 @@ class CpuRenderer final : public Renderer {
 
   uint32_t max_rows() const override { return scene_.window.height; }
   const Holding& holding() const override { return holding_; }
+  Result<void> follow(const Moved& moved) override {
+    for (uint32_t i : moved.instances) instances_[i] = instance_view(scene_.instances[i]);
+    return {};
+  }
   Result<RenderStats> render(Strip strip, Frame& frame, const Progress& progress) override;
 
  private:

@@ -119,6 +119,15 @@ bool DeviceGroup::take_over(const Error& error) {
   return true;
 }
 
+Result<void> DeviceGroup::follow(const Moved& moved) {
+  for (const auto& renderer : renderers_) {
+    auto followed = renderer->follow(moved);
+    if (followed) continue;
+    return take_over(followed.error()) ? open_all() : followed;
+  }
+  return {};
+}
+
 Result<Frame> DeviceGroup::render(const Progress& progress) {
   auto frame = render_once(progress);
   if (frame || !take_over(frame.error())) return frame;

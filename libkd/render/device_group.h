@@ -17,6 +17,9 @@ class DeviceGroup {
   static Result<DeviceGroup> open(std::vector<Device> devices, bool cpu_may_take_over, const LoadedScene& scene,
                                   const RenderSettings& settings);
 
+  /// Takes over what `move_to` has moved in the scene.
+  Result<void> follow(const Moved& moved);
+
   /// `progress` may cancel: ErrorClass::interrupted.
   Result<Frame> render(const Progress& progress);
 

@@ -19,11 +19,18 @@ struct Needs {
   bool source_primitives = false;
 };
 
-Needs needs_of(const scene::Scene& scene, const std::vector<scene::Light>& lights, const RenderSettings& settings) {
+/// At some frame.
+bool may_shine(const scene::Light& light) {
+  return !is_black(light.colour) || std::any_of(light.keys.begin(), light.keys.end(), [](const scene::LightKey& key) {
+    return key.colour && !is_black(*key.colour);
+  });
+}
+
+Needs needs_of(const scene::Scene& scene, const RenderSettings& settings) {
   const auto asked = [&](image::Aov aov) {
     return std::find(settings.aovs.begin(), settings.aovs.end(), aov) != settings.aovs.end();
   };
-  const bool lit = std::any_of(lights.begin(), lights.end(), [](const auto& l) { return !is_black(l.colour); });
+  const bool lit = std::any_of(scene.lights.begin(), scene.lights.end(), may_shine);
   return {lit || !is_black(scene.ambient), lit || asked(image::Aov::normal), asked(image::Aov::primitive)};
 }
 
@@ -75,27 +82,64 @@ CameraView camera_view(const scene::Camera& camera, scene::FilmSize film) {
   return view;
 }
 
-void load_lights(const std::vector<scene::Light>& lights, LoadedScene& loaded) {
-  for (const scene::Light& light : lights) {
+double cosine_of_degrees(double degrees) { return std::cos(degrees * std::numbers::pi / 180); }
+
+LightView light_view(const scene::Light& light) {
+  LightView view;
+  view.colour = light.colour;
+  view.is_point = light.kind != scene::LightKind::directional;
+  view.vector = view.is_point ? light.position : -light.direction;
+  if (!view.is_point) return view;
+  view.inverse_square = light.falloff == scene::Falloff::inverse_square;
+  view.inverse_reach = 1 / light.reach;
+  if (light.kind == scene::LightKind::spot) {
+    view.axis = light.direction;
+    view.cos_outer = cosine_of_degrees(light.outer_degrees);
+    const double width = cosine_of_degrees(light.inner_degrees) - view.cos_outer;
+    view.inverse_width = width > 0 ? 1 / width : 1e300;
+  }
+  view.is_even = !view.inverse_square && view.inverse_reach == 0 && light.kind == scene::LightKind::point;
+  return view;
+}
+
+/// Whether some instance is within the light's reach.
+bool reaches(const scene::Light& light, std::span<const HierarchyNode> hierarchy) {
+  if (light.kind == scene::LightKind::directional || hierarchy.empty()) return !hierarchy.empty();
+  double squared = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double at = light.position[axis], lo = hierarchy[0].lo[axis], hi = hierarchy[0].hi[axis];
+    const double off = at < lo ? lo - at : at > hi ? at - hi : 0;
+    squared += off * off;
+  }
+  return std::sqrt(squared) <= light.reach;
+}
+
+/// All that depends on the frame but the instances.
+Result<void> look_at_frame(LoadedScene& loaded, const scene::Scene& scene, double frame) {
+  const auto camera = scene::camera_at(scene, frame);
+  if (!camera) return camera.error();
+  const auto lights = scene::lights_at(scene, frame);
+  if (!lights) return lights.error();
+  loaded.camera = camera_view(*camera, loaded.film);
+  loaded.lights.clear();
+  loaded.skipped.black_lights = loaded.skipped.lights_out_of_reach = 0;
+  for (const scene::Light& light : *lights) {
     if (is_black(light.colour)) {
       ++loaded.skipped.black_lights;
-      ++loaded.skipped.shadow_launches;
-      continue;
+    } else if (!reaches(light, loaded.hierarchy)) {
+      ++loaded.skipped.lights_out_of_reach;
+    } else {
+      loaded.lights.push_back(light_view(light));
     }
-    const bool point = light.kind != scene::LightKind::directional;
-    loaded.lights.push_back({point ? light.position : -light.direction, light.colour, point ? 1u : 0u});
   }
+  return {};
 }
 
 }  // namespace
 
-Result<LoadedScene> load_scene(const scene::Scene& scene, const RenderSettings& settings) {
+Result<LoadedScene> load_scene(const scene::Scene& scene, const RenderSettings& settings, double frame) {
   LoadedScene loaded;
-  const auto camera = scene::camera_at(scene, scene::kDefaultFrame);
-  if (!camera) return camera.error();
-  const auto lights = scene::lights_at(scene, scene::kDefaultFrame);
-  if (!lights) return lights.error();
-  const Needs needs = needs_of(scene, *lights, settings);
+  const Needs needs = needs_of(scene, settings);
   std::vector<Lattice> lattices(scene.objects.size());
   loaded.objects.resize(scene.objects.size());
   const std::vector<scene::ObjectUse> uses = scene::object_uses(scene);
@@ -119,31 +163,33 @@ Result<LoadedScene> load_scene(const scene::Scene& scene, const RenderSettings& 
       return attributes.error();
   }
 
-  auto instances = scene::place_instances(scene, lattices);
-  if (!instances) return instances.error();
-  loaded.instances = std::move(*instances);
-  loaded.hierarchy = scene::build_hierarchy(loaded.instances);
+  auto placed = scene::PlacedScene::place(scene, lattices, frame);
+  if (!placed) return placed.error();
+  loaded.placed = std::move(*placed);
+  loaded.instances = loaded.placed->instances();
+  loaded.hierarchy = loaded.placed->hierarchy();
   loaded.overrides = scene::override_materials(scene);
-  static_assert(kNone == scene::kOwnMaterials);
-  for (const scene::Instance& instance : loaded.instances) loaded.override_of.push_back(instance.material);
-  load_lights(*lights, loaded);
-  loaded.camera = camera_view(*camera, scene.film);
   loaded.film = scene.film;
   loaded.window = settings.crop.value_or(image::Window{0, 0, scene.film.width, scene.film.height});
+  loaded.most_lights = static_cast<uint32_t>(scene.lights.size());
+  loaded.moves = scene::key_range(scene).has_value();
   loaded.ambient = scene.ambient;
   loaded.background = scene.background;
   loaded.skipped.aov_buffers = static_cast<uint32_t>(image::kAovRows.size() - settings.aovs.size());
+  if (auto looked = look_at_frame(loaded, scene, frame); !looked) return looked.error();
   return loaded;
 }
 
-std::vector<InstanceView> instance_views(const LoadedScene& scene) {
-  std::vector<InstanceView> views;
-  views.reserve(scene.instances.size());
-  for (size_t i = 0; i < scene.instances.size(); ++i) {
-    const scene::Instance& instance = scene.instances[i];
-    views.push_back({instance.scene_to_lattice, instance.lattice_to_scene, instance.object, scene.override_of[i]});
-  }
-  return views;
+Result<Moved> move_to(LoadedScene& loaded, const scene::Scene& scene, double frame) {
+  const auto moved = loaded.placed->move_to(frame);
+  if (!moved) return moved.error();
+  if (auto looked = look_at_frame(loaded, scene, frame); !looked) return looked.error();
+  return Moved{*moved};
+}
+
+InstanceView instance_view(const scene::Instance& instance) {
+  static_assert(kNone == scene::kOwnMaterials);
+  return {instance.scene_to_lattice, instance.lattice_to_scene, instance.object, instance.material};
 }
 
 }  // namespace kd::render

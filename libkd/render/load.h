@@ -10,7 +10,7 @@
 #include "image/film.h"
 #include "nkd/object_file.h"
 #include "render/view.h"
-#include "scene/instances.h"
+#include "scene/placed_scene.h"
 #include "scene/scene.h"
 #include "sys/result.h"
 
@@ -38,17 +38,19 @@ struct Skipped {
   uint32_t objects = 0;   // that no part places: not opened
   uint32_t sections = 0;  // present in opened objects, but read by no stage
   uint32_t black_lights = 0;
-  uint32_t aov_buffers = 0;      // AOVs that nobody asked for
-  uint32_t shadow_launches = 0;  // a launch for each light that is black
+  uint32_t lights_out_of_reach = 0;  // of every instance
+  uint32_t aov_buffers = 0;          // AOVs that nobody asked for
 };
 
 struct LoadedScene {
   std::vector<LoadedObject> objects;  // one a scene object
-  std::vector<scene::Instance> instances;
-  std::vector<HierarchyNode> hierarchy;
-  std::vector<LightView> lights;  // none of them black
+  std::optional<scene::PlacedScene> placed;
+  std::span<const scene::Instance> instances;  // of `placed`, and so is the hierarchy
+  std::span<const HierarchyNode> hierarchy;
+  std::vector<LightView> lights;  // those that can light something
   std::vector<Material> overrides;
-  std::vector<uint32_t> override_of;  // per instance: index into overrides, or kNone
+  uint32_t most_lights = 0;  // at any frame
+  bool moves = false;        // whether anything has keys
   CameraView camera;
   scene::FilmSize film;
   image::Window window;  // of the film: what is rendered
@@ -57,11 +59,23 @@ struct LoadedScene {
   Skipped skipped;
 };
 
-/// Opens the objects that parts place, validates what will be read, and places the instances. Errors as
-/// ObjectFile::open and scene::place_instances; ErrorClass::object too for an object whose vertices are float32.
-Result<LoadedScene> load_scene(const scene::Scene& scene, const RenderSettings& settings);
+/// Opens the objects that parts place, validates what will be read, and places the instances as they are at a frame of
+/// the film; `scene` must outlive what is loaded and stay as it is. Errors as ObjectFile::open, scene::place_instances
+/// and scene::camera_at; ErrorClass::object too for an object whose vertices are float32.
+Result<LoadedScene> load_scene(const scene::Scene& scene, const RenderSettings& settings,
+                               double frame = scene::kDefaultFrame);
 
-/// The parts of a SceneView that are the same on every device.
-std::vector<InstanceView> instance_views(const LoadedScene& scene);
+/// What has moved from one frame to another: these instances, and of the hierarchy whatever is above them, or all of
+/// it.
+struct Moved {
+  std::span<const uint32_t> instances;  // ascending; valid until the next move
+};
+
+/// Moves a loaded scene to another frame: camera, lights, and the instances that keys move. Sections stay as they are.
+/// Errors as load_scene; the scene then belongs to no frame.
+Result<Moved> move_to(LoadedScene& loaded, const scene::Scene& scene, double frame);
+
+/// What a stage sees of an instance.
+InstanceView instance_view(const scene::Instance& instance);
 
 }  // namespace kd::render

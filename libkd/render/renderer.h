@@ -58,6 +58,8 @@ class Renderer {
   /// The most rows a strip may have, at least 1.
   virtual uint32_t max_rows() const = 0;
   virtual const Holding& holding() const = 0;
+  /// Takes over what `move_to` has moved in the scene.
+  virtual Result<void> follow(const Moved& moved) = 0;
   /// Renders a strip into its rows of `frame`, whose buffers have the window's size. Several renderers may do so at
   /// once, each its own strip: nothing else of `frame` is touched, its stats included. `progress` hears the strip's
   /// share.

@@ -31,9 +31,15 @@ struct InstanceView {
 };
 
 struct LightView {
-  Vec3d vector;  // scene space: where a point light is; the way to a directional one, length 1
+  Vec3d vector;                  // scene space: where a point or spot light is; the way to a directional one, length 1
+  Vec3d axis{0, 0, 0};           // the way a spot light shines, length 1; zero of others
+  double cos_outer = -1;         // of a spot light: nothing arrives where the cosine to the axis is less
+  double inverse_width = 1e300;  // 1 / (cos inner - cos outer)
+  double inverse_reach = 0;      // 0: no end
   Vec3f colour;
-  uint32_t is_point = 1;
+  bool is_point = true;  // or spot
+  bool inverse_square = false;
+  bool is_even = true;  // all of it arrives everywhere
 };
 
 struct SceneView {

@@ -25,6 +25,7 @@ class FakeRenderer final : public render::Renderer {
   FakeRenderer(std::unique_ptr<Renderer> cpu, Plan& plan) : cpu_(std::move(cpu)), plan_(plan) {}
   uint32_t max_rows() const override { return plan_.max_rows; }
   const render::Holding& holding() const override { return cpu_->holding(); }
+  Result<void> follow(const render::Moved& moved) override { return cpu_->follow(moved); }
   Result<render::RenderStats> render(render::Strip strip, render::Frame& frame, const Progress& progress) override {
     CHECK(strip.rows <= plan_.max_rows);
     if (plan_.strips++ == plan_.fails_at_strip) return Error{ErrorClass::device, "", "CUDA: rendering: lost"};

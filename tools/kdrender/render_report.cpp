@@ -90,7 +90,9 @@ Json render_json(const std::string& scene_path, const std::string& output, const
        {{"objects_not_opened", skipped.objects},
         {"sections_not_read", skipped.sections},
         {"black_lights", skipped.black_lights},
-        {"shadow_launches", skipped.shadow_launches + (stats.primary_hits == 0 ? scene.lights.size() : 0)},
+        {"lights_out_of_reach", skipped.lights_out_of_reach},
+        {"shadow_launches",
+         skipped.black_lights + skipped.lights_out_of_reach + (stats.primary_hits == 0 ? scene.lights.size() : 0)},
         {"shadow_rays", stats.primary_hits * scene.lights.size() - stats.shadow_rays},
         {"aov_buffers", skipped.aov_buffers}}},
   };

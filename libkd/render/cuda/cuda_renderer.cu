@@ -77,6 +77,10 @@ class CudaRenderer final : public Renderer {
   Result<void> open();
   uint32_t max_rows() const override { return buffers_.rows(); }
   const Holding& holding() const override { return holding_; }
+  Result<void> follow(const Moved& moved) override {
+    KD_CUDA_TRY(cudaSetDevice(index_), "choosing the device");
+    return device_scene_.follow(scene_, moved, stream_);
+  }
   Result<RenderStats> render(Strip strip, Frame& frame, const Progress& progress) override;
 
  private:

@@ -10,7 +10,17 @@ cudaError_t fill_piece(const T* piece, std::span<const T> section, cudaStream_t 
   return upload(const_cast<T*>(piece), section, stream);
 }
 
+__global__ void scatter_kernel(const InstanceView* moved, const uint32_t* indices, uint32_t count,
+                               InstanceView* instances) {
+  const uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
+  if (i < count) instances[indices[i]] = moved[i];
+}
+
 }  // namespace
+
+DeviceScene::~DeviceScene() {
+  if (pinned_) cudaHostUnregister(const_cast<void*>(pinned_));
+}
 
 void DeviceScene::lay_out(const LoadedScene& scene) {
   memory_.section("objects");
@@ -36,7 +46,7 @@ void DeviceScene::lay_out(const LoadedScene& scene) {
   memory_.section("hierarchy");
   view_.hierarchy = memory_.piece<HierarchyNode>(scene.hierarchy.size());
   memory_.section("lights");
-  view_.lights = memory_.piece<LightView>(scene.lights.size());
+  view_.lights = memory_.piece<LightView>(scene.most_lights);
 }
 
 Result<void> DeviceScene::create(const LoadedScene& scene, cudaStream_t stream) {
@@ -64,12 +74,50 @@ Result<void> DeviceScene::fill(const LoadedScene& scene, cudaStream_t stream) {
     KD_CUDA_TRY(fill_piece(v.materials, a.materials, stream), action);
     KD_CUDA_TRY(fill_piece(v.material_ids, a.material_ids, stream), action);
   }
-  const std::vector<InstanceView> instances = instance_views(scene);
+  std::vector<InstanceView> instances;
+  instances.reserve(scene.instances.size());
+  for (const scene::Instance& instance : scene.instances) instances.push_back(instance_view(instance));
   KD_CUDA_TRY(fill_piece(view_.objects, std::span<const ShadedObjectView>(object_views_), stream), action);
   KD_CUDA_TRY(fill_piece(view_.instances, std::span<const InstanceView>(instances), stream), action);
   KD_CUDA_TRY(fill_piece(view_.overrides, std::span<const Material>(scene.overrides), stream), action);
-  KD_CUDA_TRY(fill_piece(view_.hierarchy, std::span<const HierarchyNode>(scene.hierarchy), stream), action);
+  KD_CUDA_TRY(fill_piece(view_.hierarchy, scene.hierarchy, stream), action);
   KD_CUDA_TRY(fill_piece(view_.lights, std::span<const LightView>(scene.lights), stream), action);
+  KD_CUDA_TRY(cudaStreamSynchronize(stream), action);
+  if (scene.moves && !scene.hierarchy.empty()) {
+    void* const nodes = const_cast<HierarchyNode*>(scene.hierarchy.data());
+    // Where the system does not allow it, copies are slower.
+    if (cudaHostRegister(nodes, scene.hierarchy.size_bytes(), cudaHostRegisterDefault) == cudaSuccess) pinned_ = nodes;
+    cudaGetLastError();
+  }
+  return {};
+}
+
+Result<void> DeviceScene::follow(const LoadedScene& scene, const Moved& moved, cudaStream_t stream) {
+  const char* action = "moving the scene";
+  KD_CUDA_TRY(fill_piece(view_.lights, std::span<const LightView>(scene.lights), stream), action);
+  if (moved.instances.empty()) return {};
+  // All nodes: which of them are above what has moved is not known, and the copy costs less than to find out.
+  KD_CUDA_TRY(fill_piece(view_.hierarchy, scene.hierarchy, stream), action);
+  std::vector<InstanceView> views;
+  views.reserve(moved.instances.size());
+  for (uint32_t i : moved.instances) views.push_back(instance_view(scene.instances[i]));
+  DeviceMemory arrived;
+  InstanceView* arrived_views = nullptr;
+  uint32_t* indices = nullptr;
+  const auto lay_out_arrivals = [&] {
+    arrived.section("moved instances");
+    arrived_views = arrived.piece<InstanceView>(views.size());
+    indices = arrived.piece<uint32_t>(views.size());
+  };
+  lay_out_arrivals();
+  if (auto allocated = arrived.allocate(); !allocated) return allocated;
+  lay_out_arrivals();
+  KD_CUDA_TRY(upload(arrived_views, std::span<const InstanceView>(views), stream), action);
+  KD_CUDA_TRY(upload(indices, moved.instances, stream), action);
+  const auto count = static_cast<uint32_t>(views.size());
+  scatter_kernel<<<blocks_for(count), kBlock, 0, stream>>>(arrived_views, indices, count,
+                                                           const_cast<InstanceView*>(view_.instances));
+  KD_CUDA_TRY(cudaGetLastError(), action);
   KD_CUDA_TRY(cudaStreamSynchronize(stream), action);
   return {};
 }

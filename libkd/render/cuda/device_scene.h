@@ -9,8 +9,15 @@ namespace kd::render {
 
 class DeviceScene {
  public:
+  DeviceScene() = default;
+  DeviceScene(const DeviceScene&) = delete;
+  DeviceScene& operator=(const DeviceScene&) = delete;
+  ~DeviceScene();
+
   /// Uploads, and waits until all is there.
   Result<void> create(const LoadedScene& scene, cudaStream_t stream);
+  /// The same of what has moved, and the lights as they are.
+  Result<void> follow(const LoadedScene& scene, const Moved& moved, cudaStream_t stream);
   /// Its pointers; counts and colours are the caller's.
   const SceneView& view() const { return view_; }
   size_t bytes() const { return memory_.bytes(); }
@@ -21,6 +28,7 @@ class DeviceScene {
 
   DeviceMemory memory_;
   SceneView view_;
+  const void* pinned_ = nullptr;  // the scene's hierarchy, if it moves: its copies are then as fast as the bus
   std::vector<DeviceObject> objects_;
   std::vector<ShadedObjectView> object_views_;
 };

@@ -1,5 +1,5 @@
 // Colour: what one light adds to a pixel it reaches, after Phong ("Illumination for computer generated pictures", CACM
-// 1975): kd (N.L) + ks (R.V)^n, times the light's colour. Lights do not fall off with distance, as in the paper.
+// 1975): kd (N.L) + ks (R.V)^n, times the light's colour and the share of it that arrives.
 #pragma once
 
 #include "core/power.h"
@@ -41,10 +41,11 @@ struct Lighting {
       const Vec3d direction = primary_direction(frame, pixel);
       const Surface surface = surface_at(frame.scene, hit, direction);
       const ToLight way = to_light(source, surface.shadow_origin, kFar);
-      asked = faces(surface, way);
+      const float share = arriving(source, way);
+      asked = share > 0 && faces(surface, way);
       if (asked) {
         // Before the ray is traced, so that nothing else of the surface is kept meanwhile.
-        added = reflected(source, surface, material_at(frame.scene, hit), way.direction, direction);
+        added = reflected(source, surface, material_at(frame.scene, hit), way.direction, direction) * share;
         lit = is_lit<Instances>(frame.scene, hit, surface.shadow_origin, way);
       }
     }

@@ -75,6 +75,21 @@ struct ToLight {
   double distance;
 };
 
+/// How much of a light arrives that way, if nothing is in it (docs/scenes.md has the formulas).
+KD_HD inline float arriving(const LightView& light, const ToLight& way) {
+  if (light.is_even) return 1;
+  double share = 1;
+  if (light.inverse_square) share = 1 / (way.distance * way.distance);
+  const double d = way.distance * light.inverse_reach;
+  if (d >= 1) return 0;
+  const double window = 1 - (d * d) * (d * d);
+  share = share * (window * window);
+  const double s = (-dot(light.axis, way.direction) - light.cos_outer) * light.inverse_width;
+  if (s <= 0) return 0;
+  if (s < 1) share = share * (s * s * (3 - 2 * s));
+  return static_cast<float>(share);
+}
+
 KD_HD KD_INLINE ToLight to_light(const LightView& light, Vec3d from, double far_away) {
   if (!light.is_point) return {light.vector, far_away};
   const Polar way = polar(light.vector - from);
