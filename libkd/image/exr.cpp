@@ -6,10 +6,13 @@
 #include <fstream>
 
 #include <ImfChannelList.h>
+#include <ImfDoubleAttribute.h>
 #include <ImfFloatAttribute.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
+#include <ImfInputFile.h>
 #include <ImfOutputFile.h>
+#include <ImfStandardAttributes.h>
 #include <ImfStdIO.h>
 #include <ImfStringAttribute.h>
 #include <ImfThreading.h>
@@ -55,10 +58,20 @@ void add_channels(Imf::Header& header, Imf::FrameBuffer& frame, const Film& film
   }
 }
 
+Imath::M44f matrix(const Matrix4& m) {
+  Imath::M44f out;
+  for (int i = 0; i < 16; ++i) out[i / 4][i % 4] = m[static_cast<size_t>(i)];
+  return out;
+}
+
 void add_attributes(Imf::Header& file, const ExrHeader& header) {
   if (header.gamma) file.insert("gamma", Imf::FloatAttribute(static_cast<float>(*header.gamma)));
   if (!header.software.empty()) file.insert("software", Imf::StringAttribute(header.software));
   for (const auto& [name, value] : header.text) file.insert(name, Imf::StringAttribute(value));
+  for (const auto& [name, value] : header.numbers) file.insert(name, Imf::DoubleAttribute(value));
+  Imf::addChromaticities(file, Imf::Chromaticities());  // whose default they are
+  if (header.world_to_camera) Imf::addWorldToCamera(file, matrix(*header.world_to_camera));
+  if (header.world_to_ndc) Imf::addWorldToNDC(file, matrix(*header.world_to_ndc));
 }
 
 /// Throws what OpenEXR throws. False: the file system would not take it all, errno says why.
@@ -93,6 +106,17 @@ bool write_film(const std::string& path, const Film& film, const ExrHeader& head
 }
 
 }  // namespace
+
+std::optional<std::string> read_exr_text(const std::string& path, const std::string& name) {
+  try {
+    Imf::InputFile file(path.c_str());
+    const auto* text = file.header().findTypedAttribute<Imf::StringAttribute>(name);
+    if (!text || !file.isComplete()) return std::nullopt;
+    return text->value();
+  } catch (const std::exception&) {
+    return std::nullopt;
+  }
+}
 
 Result<void> write_exr(const std::string& path, const Film& film, const ExrHeader& header) {
   if (!buffers_fit(film)) return Error{ErrorClass::output, path, "cannot write: the film's buffers lack its size"};

@@ -36,6 +36,12 @@ void add_options(CLI::App& app, RenderOptions& o) {
   app.add_option("-o,--output", o.output, "The EXR to write: R, G, B, A and AOVs, scene-linear")->check(file_name());
   app.add_option("--preview", o.preview, "Write an 8-bit PNG too, through the gamma stage");
   app.add_option("--device", o.device, "auto, cpu, cuda, cuda:N, cuda:all, or a list of these")->capture_default_str();
+  app.add_option("--frames", o.frames,
+                 "Frames of a film: 12, 1-240 or 1-240x2; a # in an output's name is a digit of them");
+  app.add_flag("--resume", o.resume,
+               "Leave out frames whose EXR is there, whole, and of this scene and these settings");
+  app.add_option("--set", o.overrides, "Change a value of the scene first: PATH=JSON, such as camera.vertical_fov=35")
+      ->take_all();
   app.add_option("--size", o.size, "Size of the film instead of the scene's, such as 1920x1080");
   app.add_option("--crop", o.crop, "Render only this part of the film: COLUMN,ROW,WIDTH,HEIGHT in pixels");
   app.add_option("--spp", o.samples, "Samples a pixel, under a tent filter; 1: its centre")

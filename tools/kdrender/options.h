@@ -15,13 +15,15 @@
 namespace kd::tools {
 
 struct RenderOptions {
-  std::string scene, output, preview, heatmap, stats, aovs, reference, size, crop;
+  std::string scene, output, preview, heatmap, stats, aovs, reference, size, crop, frames;
+  std::vector<std::string> overrides;  // "path=value"
   std::string device = "auto";
   uint32_t samples = 1;
   double gamma = 2.2;
   double threshold = 0;
   bool gamma_on_exr = false;
   bool check = false;
+  bool resume = false;
   unsigned threads = 0;
   bool quiet = false;
 };

@@ -1,0 +1,63 @@
+#include "kdrender/exr_header.h"
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "sys/hash.h"
+
+namespace kd::tools {
+
+namespace {
+
+struct Axes {
+  Vec3d right, up, back;
+};
+
+Axes axes_of(const scene::Camera& camera) {
+  const Vec3d back = normalised(camera.position - camera.target);
+  const Vec3d right = normalised(cross(normalised(camera.up), back));
+  return {right, cross(back, right), back};
+}
+
+/// The matrix that takes p to (dot(columns[i], p - origin))_i, and to a fourth coordinate of the same kind.
+image::Matrix4 matrix_of(const Vec3d (&columns)[4], const double (&offsets)[4], Vec3d origin) {
+  image::Matrix4 m{};
+  for (size_t column = 0; column < 4; ++column) {
+    for (size_t row = 0; row < 3; ++row) {
+      m[4 * row + column] = static_cast<float>(columns[column][static_cast<int>(row)]);
+    }
+    m[12 + column] = static_cast<float>(offsets[column] - dot(columns[column], origin));
+  }
+  return m;
+}
+
+}  // namespace
+
+image::Matrix4 world_to_camera(const scene::Camera& camera) {
+  const Axes axes = axes_of(camera);
+  return matrix_of({axes.right, axes.up, axes.back, {0, 0, 0}}, {0, 0, 0, 1}, camera.position);
+}
+
+image::Matrix4 world_to_ndc(const scene::Camera& camera, const scene::FilmSize& film) {
+  const Axes axes = axes_of(camera);
+  const double half_height = std::tan(camera.vertical_fov_degrees * std::numbers::pi / 360);
+  const double half_width = half_height * film.width / film.height;
+  const Vec3d depth = -axes.back;  // what a point is divided by
+  return matrix_of(
+      {axes.right * (0.5 / half_width) + depth * 0.5, axes.up * (-0.5 / half_height) + depth * 0.5, depth, depth},
+      {0, 0, 0, 0}, camera.position);
+}
+
+std::string objects_hash(const render::LoadedScene& scene) {
+  std::vector<uint64_t> marks;
+  for (const render::LoadedObject& object : scene.objects) {
+    if (!object.file) continue;
+    const nkd::Summary& summary = object.file->summary();
+    const std::string& settings = summary.provenance.settings;
+    marks.insert(marks.end(), {summary.provenance.source_hash, hash_bytes(settings.data(), settings.size())});
+  }
+  return hash_text(hash_bytes(marks.data(), marks.size() * sizeof(uint64_t)));
+}
+
+}  // namespace kd::tools
