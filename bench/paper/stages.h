@@ -205,9 +205,11 @@ struct Colour {
     const Vec3d direction = strip.rays[pixel].direction;
     const Surface surface = render::surface_at(scene, hit, direction);
     const ToLight way = render::to_light(source, surface.shadow_origin, render::kFar);
-    if (!render::faces(surface, way)) return;
+    const float share = render::arriving(source, way);
+    if (!(share > 0) || !render::faces(surface, way)) return;
     Vec3f& colour = strip.frame.colour[strip.first + pixel].colour;
-    colour = colour + render::reflected(source, surface, render::material_at(scene, hit), way.direction, direction);
+    colour =
+        colour + render::reflected(source, surface, render::material_at(scene, hit), way.direction, direction) * share;
   }
 };
 

@@ -33,9 +33,7 @@ uint64_t for_each_pixel(const Stage& stage, size_t pixels, SharedProgress& progr
 class CpuRenderer final : public Renderer {
  public:
   CpuRenderer(const LoadedScene& scene, const RenderSettings& settings)
-      : scene_(scene), settings_(settings), objects_(scene) {
-    instances_.reserve(scene.instances.size());
-    for (const scene::Instance& instance : scene.instances) instances_.push_back(instance_view(instance));
+      : scene_(scene), settings_(settings), objects_(scene), instances_(instance_views(scene)) {
     holding_.upload_seconds = opening_.seconds();
     for (const LoadedObject& object : scene.objects) holding_.object_bytes += object_bytes(object);
     holding_.scene_bytes = instances_.size() * sizeof(InstanceView) + scene.hierarchy.size() * sizeof(HierarchyNode) +

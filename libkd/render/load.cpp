@@ -192,4 +192,11 @@ InstanceView instance_view(const scene::Instance& instance) {
   return {instance.scene_to_lattice, instance.lattice_to_scene, instance.object, instance.material};
 }
 
+std::vector<InstanceView> instance_views(const LoadedScene& scene) {
+  std::vector<InstanceView> views;
+  views.reserve(scene.instances.size());
+  for (const scene::Instance& instance : scene.instances) views.push_back(instance_view(instance));
+  return views;
+}
+
 }  // namespace kd::render

@@ -77,5 +77,6 @@ Result<Moved> move_to(LoadedScene& loaded, const scene::Scene& scene, double fra
 
 /// What a stage sees of an instance.
 InstanceView instance_view(const scene::Instance& instance);
+std::vector<InstanceView> instance_views(const LoadedScene& scene);
 
 }  // namespace kd::render

@@ -53,6 +53,24 @@ Exr read_exr(const std::string& path) {
   return exr;
 }
 
+/// The words of all channels, one after the other; a header has times.
+std::string read_pixels(const std::string& path) {
+  Imf::InputFile file(path.c_str());
+  const Imath::Box2i window = file.header().dataWindow();
+  const auto width = static_cast<size_t>(window.max.x + 1), height = static_cast<size_t>(window.max.y + 1);
+  std::string bytes;
+  const Imf::ChannelList& channels = file.header().channels();
+  for (auto c = channels.begin(); c != channels.end(); ++c) {
+    std::string channel(4 * width * height, '\0');
+    Imf::FrameBuffer frame;
+    frame.insert(c.name(), Imf::Slice(c.channel().type, channel.data(), 4, 4 * width));
+    file.setFrameBuffer(frame);
+    file.readPixels(0, window.max.y);
+    bytes += channel;
+  }
+  return bytes;
+}
+
 /// data/spheres.json at 96 x 64, with changes.
 json small_spheres(const Terminal& t) {
   json scene = json::parse(t.read("spheres.json"));
@@ -132,11 +150,12 @@ TEST_SUITE("kdrender") {
     t.set_up_spheres();
     const json scene = small_spheres(t);
     rendered(t, scene, {"--preview", "p.png"});
-    const std::string linear = t.read("o.exr"), preview = t.read("p.png");
+    const std::string preview = t.read("p.png");
     const Exr before = read_exr(t.path("o.exr"));
     CHECK(!before.gamma);
     rendered(t, scene, {"--preview", "p.png", "--gamma", "1.0"});
-    CHECK(t.read("o.exr") == linear);
+    CHECK(read_exr(t.path("o.exr")).green == before.green);
+    CHECK(!read_exr(t.path("o.exr")).gamma);
     CHECK(t.read("p.png") != preview);
     rendered(t, scene, {"--gamma-exr", "--gamma", "2"});
     const Exr after = read_exr(t.path("o.exr"));
@@ -153,7 +172,7 @@ TEST_SUITE("kdrender") {
     std::set<std::string> images;
     for (const char* threads : {"1", "8", "8"}) {
       t.succeeds(kTool, {"spheres.json", "-o", "o.exr", "--aov", kAllAovs, "--threads", threads, "--device", "cpu"});
-      images.insert(t.read("o.exr"));
+      images.insert(read_pixels(t.path("o.exr")));
     }
     CHECK(images.size() == 1);
   }
@@ -176,13 +195,13 @@ TEST_SUITE("kdrender") {
     json scene = small_spheres(t);
     scene.erase("lights");
     rendered(t, scene);
-    const std::string dark = t.read("o.exr");
+    const Exr dark = read_exr(t.path("o.exr"));
     scene["lights"] = {{{"kind", "point"}, {"position", {0, 5, 0}}, {"colour", {0, 0, 0}}}};
     const json report = rendered(t, scene);
     CHECK(report["skipped"]["black_lights"] == 1);
     CHECK(!ran(report, "shadow, colour"));
     CHECK(report["rays"]["shadow"] == 0);
-    CHECK(t.read("o.exr") == dark);
+    CHECK(read_exr(t.path("o.exr")).green == dark.green);
   }
 
   TEST_CASE("a view of nothing") {

@@ -96,13 +96,13 @@ TEST_SUITE("kdrender view") {
 
   TEST_CASE("a heatmap adds nothing to the EXR that was not asked for") {
     const Studio s;
-    s.film({"--size", "32x32"});
-    const std::string plain = s.read("o.exr");
-    s.film({"--size", "32x32", "--heatmap", "h.png"});
-    CHECK(s.read("o.exr") == plain);
+    const auto has_visits = [&] { return s.read("o.exr").find("visits.nodes") != std::string::npos; };
+    const image::Film plain = s.film({"--size", "32x32"});
+    CHECK(image::compare_colour(plain, s.film({"--size", "32x32", "--heatmap", "h.png"})).pixels == 0);
+    CHECK_FALSE(has_visits());
     CHECK(s.exists("h.png"));
     s.film({"--size", "32x32", "--heatmap", "h.png", "--aov", "visits"});
-    CHECK(s.read("o.exr") != plain);
+    CHECK(has_visits());
     s.refuses({"--heatmap", "spheres.json"}, ErrorClass::usage, {"spheres.json"});
   }
 

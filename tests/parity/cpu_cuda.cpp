@@ -36,6 +36,37 @@ void check_same(const std::string& name, const scene::Scene& scene, const render
 
 }  // namespace
 
+TEST_CASE("a film's frames on CUDA, reached by motion, are those of the CPU alone") {
+  const auto cuda = render::choose_device("cuda");
+  if (!cuda) {
+    MESSAGE("skipped: " << cuda.error().line());
+    return;
+  }
+  Workshop workshop;
+  for (const char* name : {"turntable.json", "walkthrough.json"}) {
+    scene::Scene scene = workshop.data_scene(name);
+    scene.film = {320, 180};
+    render::RenderSettings settings;
+    settings.samples = 3;
+    auto loaded = render::load_scene(scene, settings, 1);
+    REQUIRE(loaded);
+    auto group = render::DeviceGroup::open({*cuda}, false, *loaded, settings);
+    REQUIRE(group);
+    for (double frame : {30.0, 77.5, 240.0, 2.0}) {
+      const auto moved = render::move_to(*loaded, scene, frame);
+      REQUIRE(moved);
+      REQUIRE(group->follow(*moved));
+      const auto on_cuda = group->render({});
+      REQUIRE(on_cuda);
+      const auto alone = render::load_scene(scene, settings, frame);
+      const auto on_cpu = render::DeviceGroup::open({render::cpu_device()}, false, *alone, settings)->render({});
+      CHECK_MESSAGE(differing(on_cuda->film.colour, on_cpu->film.colour) == 0, name << " " << frame);
+      CHECK(on_cuda->stats.primary_hits > 1000);
+    }
+    MESSAGE(name << ": the same, 4 frames of 3 samples");
+  }
+}
+
 TEST_CASE("CPU and CUDA images are bit-identical") {
   auto cuda = render::choose_device("cuda");
   if (!cuda) {
@@ -45,7 +76,8 @@ TEST_CASE("CPU and CUDA images are bit-identical") {
   const auto cpu = render::choose_device("cpu");
   REQUIRE(cpu);
   Workshop workshop;
-  for (const char* name : {"cathedral.json", "spheres.json"}) check_same(name, workshop.data_scene(name), *cpu, *cuda);
+  for (const char* name : {"cathedral.json", "spheres.json", "turntable.json"})
+    check_same(name, workshop.data_scene(name), *cpu, *cuda);
 
   for (const char* name : kRealMeshes) {
     const auto mesh = shared_mesh(std::string(name) + ".ply");

@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "sys/atomic_file.h"
+#include "sys/timer.h"
 
 namespace kd::tools {
 
@@ -38,13 +39,22 @@ bool processor_suffices() {
 #endif
 }
 
+/// "5 s", "2 min 05 s", "3 h 07 min".
+std::string duration_text(double seconds) {
+  const auto whole = static_cast<long>(seconds + 0.5);
+  if (whole < 60) return fmt::format("{} s", whole);
+  if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
+  return fmt::format("{} h {:02} min", whole / 3600, whole / 60 % 60);
+}
+
 }  // namespace
 
 std::string version_text() { return "kdtrace " KD_VERSION; }
 
 std::string exit_status_text() {
   return "Exit status: 0 done; 2 usage; 3 input missing or unreadable; 4 bad mesh; 5 bad .nkd; 6 bad scene;\n"
-         "7 output not writable; 8 device not there or failed; 9 out of memory or size; 10 interrupted;\n11 differs from its reference; 1 a fault of "
+         "7 output not writable; 8 device not there or failed; 9 out of memory or size; 10 interrupted;\n11 differs "
+         "from its reference; 1 a fault of "
          "our own.";
 }
 
@@ -196,9 +206,13 @@ int run_tool(CLI::App& app, int argc, char** argv, const std::function<int()>& r
 
 Progress progress_bar(std::string label, bool quiet) {
   const bool shown = !quiet && isatty(STDERR_FILENO);
-  return [label = std::move(label), shown](double share) {
+  return [label = std::move(label), shown, timer = Timer()](double share) {
     if (shown) {
-      fmt::print(stderr, "\r{}  {:3.0f} %{}", label, 100 * share, share >= 1 ? "\r\033[K" : "");
+      // What is left is known once a second and a hundredth have gone by.
+      const double past = timer.seconds();
+      const std::string left =
+          past > 1 && share > 0.01 ? fmt::format("  {} left", duration_text(past / share - past)) : "";
+      fmt::print(stderr, "\r{}  {:3.0f} %{}\033[K{}", label, 100 * share, left, share >= 1 ? "\r\033[K" : "");
       std::fflush(stderr);
     }
     return !interrupt_seen.load();

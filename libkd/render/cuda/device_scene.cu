@@ -74,9 +74,7 @@ Result<void> DeviceScene::fill(const LoadedScene& scene, cudaStream_t stream) {
     KD_CUDA_TRY(fill_piece(v.materials, a.materials, stream), action);
     KD_CUDA_TRY(fill_piece(v.material_ids, a.material_ids, stream), action);
   }
-  std::vector<InstanceView> instances;
-  instances.reserve(scene.instances.size());
-  for (const scene::Instance& instance : scene.instances) instances.push_back(instance_view(instance));
+  const std::vector<InstanceView> instances = instance_views(scene);
   KD_CUDA_TRY(fill_piece(view_.objects, std::span<const ShadedObjectView>(object_views_), stream), action);
   KD_CUDA_TRY(fill_piece(view_.instances, std::span<const InstanceView>(instances), stream), action);
   KD_CUDA_TRY(fill_piece(view_.overrides, std::span<const Material>(scene.overrides), stream), action);
