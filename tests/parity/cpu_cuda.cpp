@@ -60,10 +60,11 @@ TEST_CASE("a film's frames on CUDA, reached by motion, are those of the CPU alon
       REQUIRE(on_cuda);
       const auto alone = render::load_scene(scene, settings, frame);
       const auto on_cpu = render::DeviceGroup::open({render::cpu_device()}, false, *alone, settings)->render({});
-      CHECK_MESSAGE(differing(on_cuda->film.colour, on_cpu->film.colour) == 0, name << " " << frame);
+      CHECK_MESSAGE(differing(on_cuda->film.colour, on_cpu->film.colour) == 0,
+                    (std::string(name) + " " + std::to_string(frame)));
       CHECK(on_cuda->stats.primary_hits > 1000);
     }
-    MESSAGE(name << ": the same, 4 frames of 3 samples");
+    MESSAGE(std::string(name) << ": the same, 4 frames of 3 samples");
   }
 }
 
