@@ -1,0 +1,16 @@
+// What grows and lies between trees.
+#pragma once
+
+#include "forest/obj_mesh.h"
+
+namespace kd::bench::forest {
+
+/// A square of grass, `side` metres wide, its middle at the origin; one blade in `per_flower` has petals (0: none).
+ObjMesh grow_turf(double side, int blades, int per_flower, uint64_t seed);
+
+ObjMesh grow_fern(uint64_t seed);
+
+/// A boulder of about a metre across, half sunk; faces are flat.
+ObjMesh make_rock(uint64_t seed);
+
+}  // namespace kd::bench::forest
