@@ -20,6 +20,7 @@ Command forest_command(CLI::App& app);
 Command frame_command(CLI::App& app);
 Command paper_command(CLI::App& app);
 Command pareto_command(CLI::App& app);
+Command scale_command(CLI::App& app);
 Command stress_command(CLI::App& app);
 Command surface_command(CLI::App& app);
 Command sweep_command(CLI::App& app);

@@ -2,28 +2,13 @@
 tables of docs/pareto.md between its markers. Errors are the same on every device, as the arithmetic is; speeds are not."""
 
 import csv
-import io
 import math
-import pathlib
-import re
 
-import matplotlib
+from plotting import DOCS, fill, plt, save, table
 
-matplotlib.use("svg")
-import matplotlib.pyplot as plt
-
-ROOT = pathlib.Path(__file__).resolve().parent.parent
-DOCS = ROOT / "docs"
-PICTURES = ROOT / "out" / "pareto"  # PNG twins, to look at
 PLAIN = {"float32 MT": "^", "float32 Woop": "s"}
 MESH_COLOURS = ["#1f6f8b", "#c2571a", "#4c8c4a", "#7a5195", "#b8860b", "#555555"]
 RAYS = ["primary", "shadow", "diffuse"]
-
-plt.rcParams.update({
-    "svg.fonttype": "none", "font.sans-serif": ["DejaVu Sans"], "svg.hashsalt": "kdtrace", "font.size": 8, "axes.spines.top": False,
-    "axes.spines.right": False, "axes.grid": True, "grid.color": "#dddddd", "grid.linewidth": 0.5,
-    "legend.frameon": False, "lines.linewidth": 1.2, "lines.markersize": 4.5,
-})
 
 
 def read(device):
@@ -55,31 +40,6 @@ def row(rows, mesh, form):
 def geometric_mean(values):
     values = [v for v in values if v > 0]
     return math.exp(sum(map(math.log, values)) / len(values)) if values else math.nan
-
-
-def slim(svg):
-    """Half the bytes: two decimals, a style a class, no indentation."""
-    svg = re.sub(r"(\d\.\d\d)\d+", r"\1", svg)
-    svg = re.sub(r' transform="rotate\(-0 [^"]*"| clip-path="[^"]*"', "", svg)
-    svg = re.sub(r"\s*\n\s*", "\n", svg)
-    styles = {}
-    def shared(match):
-        return f'class="s{styles.setdefault(match.group(1), len(styles))}"'
-    svg = re.sub(r'style="([^"]*)"', shared, svg)
-    rules = "\n".join(f".s{number} {{{style}}}" for style, number in styles.items())
-    return svg.replace("</style>", rules + "\n</style>", 1)
-
-
-def save(figure, name, bottom=0):
-    for axis in figure.axes:
-        axis.minorticks_off()
-    figure.tight_layout(rect=(0, bottom, 1, 1))
-    drawing = io.StringIO()
-    figure.savefig(drawing, format="svg", metadata={"Date": None})
-    (DOCS / f"{name}.svg").write_text(slim(drawing.getvalue()))
-    PICTURES.mkdir(parents=True, exist_ok=True)
-    figure.savefig(PICTURES / f"{name}.png", dpi=110, metadata={"Software": None})
-    plt.close(figure)
 
 
 def grid_of_meshes(rows, title):
@@ -166,11 +126,6 @@ def plot_aimed(rows):
     save(figure, "pareto-aimed")
 
 
-def table(heads, rows):
-    lines = ["| " + " | ".join(heads) + " |", "|" + " --- |" * len(heads)]
-    return "\n".join(lines + ["| " + " | ".join(cells) + " |" for cells in rows])
-
-
 def forms_of(rows):
     return list(dict.fromkeys(r["form"] for r in rows))
 
@@ -236,14 +191,6 @@ def exactness_table(rows):
     means = [f"{geometric_mean([row(rows, m, 'B 21')[f'exact_to_mt_{rays}'] for m in meshes(rows)]):.3f}" for rays in RAYS]
     out.append(["geometric mean", "", "", "", *means])
     return table(["mesh", *[f"{rays}: exact / MT / Woop" for rays in RAYS], *[f"exact / MT, {rays}" for rays in RAYS]], out)
-
-
-def fill(text, name, body):
-    """The text with what stands between the markers of `name` replaced."""
-    pattern = re.compile(rf"(<!-- {name} -->\n).*?(<!-- /{name} -->)", re.S)
-    if not pattern.search(text):
-        raise SystemExit(f"docs/pareto.md has no place for {name}")
-    return pattern.sub(lambda m: m.group(1) + "\n" + body + "\n\n" + m.group(2), text)
 
 
 def main():

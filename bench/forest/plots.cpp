@@ -179,7 +179,7 @@ std::vector<NamedMesh> grow_meshes(uint64_t seed) {
   add("fern", grow_fern(seed + 18));
   add("turf", grow_turf(kTurf, 4500, 0, seed + 19));
   add("flowers", grow_turf(kTurf, 4000, 40, seed + 20));
-  add("rock", make_rock(seed + 21));
+  add("rock", make_rock(24, seed + 21));
   return meshes;
 }
 

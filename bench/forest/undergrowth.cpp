@@ -67,9 +67,9 @@ ObjMesh grow_fern(uint64_t seed) {
   return mesh;
 }
 
-ObjMesh make_rock(uint64_t seed) {
+ObjMesh make_rock(int cells, uint64_t seed) {
   ObjMesh mesh;
-  constexpr int kCells = 24;  // of a cube's edge; the cube is blown up to a ball, and that is dented
+  // A cube of so many cells an edge is blown up to a ball, and that is dented.
   const auto surface = [&](Vec3d cube) {
     const Vec3d d = normalised(cube);
     const double dent = 0.25 * noise(d * 1.3, seed) + 0.12 * noise(d * 3.1, seed + 1) + 0.05 * noise(d * 8.0, seed + 2);
@@ -81,12 +81,12 @@ ObjMesh make_rock(uint64_t seed) {
     const auto corner = [&](int i, int j) {
       Vec3d p;
       p.set(axis, side);
-      p.set((axis + 1) % 3, side * (2.0 * i / kCells - 1));
-      p.set((axis + 2) % 3, 2.0 * j / kCells - 1);
+      p.set((axis + 1) % 3, side * (2.0 * i / cells - 1));
+      p.set((axis + 2) % 3, 2.0 * j / cells - 1);
       return Corner{mesh.vertex(surface(p)), 0};
     };
-    for (int i = 0; i < kCells; ++i) {
-      for (int j = 0; j < kCells; ++j) {
+    for (int i = 0; i < cells; ++i) {
+      for (int j = 0; j < cells; ++j) {
         mesh.quad(Stuff::stone, corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1));
       }
     }

@@ -10,7 +10,7 @@ ObjMesh grow_turf(double side, int blades, int per_flower, uint64_t seed);
 
 ObjMesh grow_fern(uint64_t seed);
 
-/// A boulder of about a metre across, half sunk; faces are flat.
-ObjMesh make_rock(uint64_t seed);
+/// A boulder of about a metre and a half around the origin: 12 cells^2 flat triangles.
+ObjMesh make_rock(int cells, uint64_t seed);
 
 }  // namespace kd::bench::forest
