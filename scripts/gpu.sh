@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # On a GPU machine, from the project's root with dist/ (scripts/dist.sh) beside it: the parity test, 10^8 adversarial rays
-# (KD_STRESS_RAYS) against exact integers, the demo render, traversal on the shared rays, exact and with float tests, and
-# run time against error. Figures go to the folder named, as JSON and CSV.
+# (KD_STRESS_RAYS) against exact integers, the demo render, traversal on the shared rays, exact and with float tests,
+# run time against error, and cost against what a scene holds. Figures go to the folder named, as JSON and CSV.
 #   scripts/gpu.sh [FOLDER]
 cd "$(dirname "$0")/.."
 set -eu
@@ -63,4 +63,14 @@ cat "$out/floor.md"
 echo "== run time against error"
 $bin/kdbench pareto $(printf 'dist/shared/data/%s.ply ' $meshes) --size 1920x1080 --device cuda --csv "$out/pareto-cuda.csv" --json "$out/pareto-cuda.json" \
   >"$out/pareto.md"
+
+echo "== cost against what a scene holds and shows"
+$bin/kdbench scale --device cuda --size 1920x1080 --json "$out/scale.json" >"$out/scale.md"
+cat "$out/scale.md"
+
+echo "== a thousand million triangles of instances, 1920 x 1080"
+$bin/kdbench forest -o dist/forest
+$bin/kdbuild build dist/forest/meshes/*.obj -o dist/forest/compiled/ --quiet
+$bin/kdrender dist/forest/forest.json -o "$out/forest.exr" --preview "$out/forest.png" --device cuda --stats "$out/forest.json"
+$bin/kdbench frame dist/forest/forest.json --device cuda
 exit $stress
