@@ -1,5 +1,6 @@
 // Directions by chance, and noise: from integers, +, -, x, / and square roots alone, so that every machine grows the
-// same forest.
+// same forest. As of Random, an expression asks for one of them at most: compilers evaluate operands and arguments in
+// orders of their own.
 #pragma once
 
 #include <cmath>

@@ -69,8 +69,9 @@ void ObjMesh::quad(Stuff stuff, Corner a, Corner b, Corner c, Corner d) {
 void ObjMesh::leaf(Stuff stuff, Vec3d base, Vec3d along, Vec3d across, Vec3d n) {
   const uint32_t shared = normal(n);
   const Vec3d widest = base + along * 0.4;
-  quad(stuff, {vertex(base), shared}, {vertex(widest + across), shared}, {vertex(base + along), shared},
-       {vertex(widest - across), shared});
+  const Corner foot{vertex(base), shared}, right{vertex(widest + across), shared};
+  const Corner tip{vertex(base + along), shared}, left{vertex(widest - across), shared};
+  quad(stuff, foot, right, tip, left);
 }
 
 uint64_t ObjMesh::triangle_count() const {

@@ -192,8 +192,9 @@ ObjMesh grow_shrub(const Species& species, int stems, uint64_t seed) {
   Grower grower(species, seed, mesh);
   Random random(seed, 1);
   for (int i = 0; i < stems; ++i) {
-    const Vec3d lean = any_across(kUp, random) * random.real(0.2, 0.9);
-    grower.grow({0, -0.1, 0}, normalised(kUp + lean), species.height * random.real(0.7, 1.1), species.radius, 1);
+    const double lean = random.real(0.2, 0.9);
+    const Vec3d side = any_across(kUp, random);
+    grower.grow({0, -0.1, 0}, normalised(kUp + side * lean), species.height * random.real(0.7, 1.1), species.radius, 1);
   }
   return mesh;
 }

@@ -14,14 +14,18 @@ Stuff shade_of(Stuff first, Random& random) {
 
 /// Three triangles that bend over, with the normals of the ground, which hide how thin a blade is.
 void add_blade(ObjMesh& mesh, Vec3d foot, double length, Random& random) {
-  const Vec3d lean = any_across(kUp, random), across = any_across(kUp, random) * random.real(0.006, 0.011);
+  const Vec3d lean = any_across(kUp, random);
+  const double half_width = random.real(0.006, 0.011);
+  const Vec3d across = any_across(kUp, random) * half_width;
   const Vec3d middle = foot + kUp * (0.6 * length) + lean * (0.12 * length);
   const Vec3d tip = foot + kUp * length + lean * (length * random.real(0.25, 0.6));
   const uint32_t n = mesh.normal(kUp + lean * 0.35);
   const Corner left{mesh.vertex(middle - across * 0.8), n}, right{mesh.vertex(middle + across * 0.8), n};
+  const Corner foot_left{mesh.vertex(foot - across), n}, foot_right{mesh.vertex(foot + across), n};
+  const Corner top{mesh.vertex(tip), n};
   const Stuff stuff = shade_of(Stuff::grass, random);
-  mesh.quad(stuff, {mesh.vertex(foot - across), n}, {mesh.vertex(foot + across), n}, right, left);
-  mesh.triangle(stuff, left, right, {mesh.vertex(tip), n});
+  mesh.quad(stuff, foot_left, foot_right, right, left);
+  mesh.triangle(stuff, left, right, top);
 }
 
 void add_flower(ObjMesh& mesh, Vec3d head, Random& random) {
@@ -87,7 +91,8 @@ ObjMesh make_rock(int cells, uint64_t seed) {
     };
     for (int i = 0; i < cells; ++i) {
       for (int j = 0; j < cells; ++j) {
-        mesh.quad(Stuff::stone, corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1));
+        const Corner a = corner(i, j), b = corner(i + 1, j), c = corner(i + 1, j + 1), d = corner(i, j + 1);
+        mesh.quad(Stuff::stone, a, b, c, d);
       }
     }
   }
