@@ -16,13 +16,14 @@ namespace kd::image {
 using Matrix4 = std::array<float, 16>;
 
 struct ExrHeader {
-  std::optional<Matrix4> world_to_camera;  // attribute "worldToCamera": right-handed, looking along -z, y up
-  std::optional<Matrix4>
-      world_to_ndc;             // "worldToNDC": (0, 0) is the picture's upper left corner, (1, 1) its lower right
   std::optional<double> gamma;  // attribute "gamma", a float; only if the colour is no longer scene-linear
   std::string software;         // attribute "software"; left out if empty
-  std::vector<std::pair<std::string, std::string>> text;  // further attributes: name (1 to 255 bytes), value
-  std::vector<std::pair<std::string, double>> numbers;    // the same, as doubles
+  std::vector<std::pair<std::string, std::string>> text;     // further attributes: name (1 to 255 bytes), value
+  std::vector<std::pair<std::string, double>> numbers = {};  // the same, as doubles
+  // "worldToCamera": right-handed, looking along -z, y up; "worldToNDC": (0, 0) is the picture's upper left corner, (1,
+  // 1) its lower right.
+  std::optional<Matrix4> world_to_camera = {};
+  std::optional<Matrix4> world_to_ndc = {};
 };
 
 /// The text attribute of that name of an EXR that is whole; nothing if there is no such file, or it is cut short.

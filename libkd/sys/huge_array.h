@@ -21,12 +21,14 @@ class HugeArray {
   HugeArray() = default;
   /// Throws std::bad_alloc.
   explicit HugeArray(size_t count) : size_(count) {
-    const size_t bytes = (count * sizeof(T) + kHugePage - 1) / kHugePage * kHugePage;
+    // What does not fill a huge page takes what it needs: a scene may have thousands of small objects.
+    const size_t alignment = count * sizeof(T) < kHugePage ? kCacheLine : kHugePage;
+    const size_t bytes = (count * sizeof(T) + alignment - 1) / alignment * alignment;
     if (bytes == 0) return;
-    data_.reset(static_cast<T*>(std::aligned_alloc(kHugePage, bytes)));
+    data_.reset(static_cast<T*>(std::aligned_alloc(alignment, bytes)));
     if (!data_) throw std::bad_alloc();
 #ifdef MADV_HUGEPAGE
-    madvise(data_.get(), bytes, MADV_HUGEPAGE);  // a wish: without huge pages it is only slower
+    if (alignment == kHugePage) madvise(data_.get(), bytes, MADV_HUGEPAGE);  // a wish: without, it is only slower
 #endif
   }
 
@@ -39,6 +41,7 @@ class HugeArray {
 
  private:
   static constexpr size_t kHugePage = size_t{2} << 20;
+  static constexpr size_t kCacheLine = 64;
 
   struct Free {
     void operator()(T* p) const { std::free(p); }
