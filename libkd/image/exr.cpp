@@ -112,6 +112,9 @@ std::optional<std::string> read_exr_text(const std::string& path, const std::str
     Imf::InputFile file(path.c_str());
     const auto* text = file.header().findTypedAttribute<Imf::StringAttribute>(name);
     if (!text || !file.isComplete()) return std::nullopt;
+    const char* last_block = nullptr;  // in the file as in the picture: what is cut short lacks it
+    int size = 0;
+    file.rawPixelData(file.header().dataWindow().max.y, last_block, size);
     return text->value();
   } catch (const std::exception&) {
     return std::nullopt;
