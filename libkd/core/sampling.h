@@ -66,7 +66,7 @@ KD_HD KD_INLINE double tent(uint32_t u) {
 /// Sample `index` of the film's pixel. Samples that are distributed like the reconstruction filter all weigh the same
 /// (Ernst, Stamminger and Greiner, "Filter importance sampling", 2006); the filter is the tent of radius 1.
 KD_HD KD_INLINE SampleOffset sample_offset(uint32_t column, uint32_t row, uint32_t index) {
-  const uint32_t seed = detail::hashed(column ^ detail::hashed(row));
+  const uint32_t seed = detail::hashed(column ^ detail::hashed(row ^ 0x9e3779b9u));  // 0 would scramble nothing
   const uint32_t x = detail::owen_scrambled(detail::reversed_bits(index), seed);
   const uint32_t y = detail::owen_scrambled(detail::sobol_second(index), detail::hashed(seed));
   return {detail::tent(x), detail::tent(y)};

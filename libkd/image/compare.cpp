@@ -15,6 +15,7 @@ namespace kd::image {
 
 namespace {
 
+constexpr size_t kMostPixels = size_t{1} << 28;
 constexpr const char* kChannels[] = {"R", "G", "B", "A"};
 
 /// Throws what OpenEXR throws.
@@ -32,6 +33,9 @@ Result<Film> read_colour(const std::string& path) {
   film.height = static_cast<uint32_t>(data.max.y - data.min.y + 1);
   film.column = static_cast<uint32_t>(data.min.x - display.min.x);
   film.row = static_cast<uint32_t>(data.min.y - display.min.y);
+  if (size_t{film.width} * film.height > kMostPixels) {
+    return Error{ErrorClass::usage, path, "no picture to compare with: it has more than 2^28 pixels"};
+  }
   film.picture_width = static_cast<uint32_t>(display.max.x - display.min.x + 1);
   film.picture_height = static_cast<uint32_t>(display.max.y - display.min.y + 1);
   film.colour.resize(4 * size_t{film.width} * film.height);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <mutex>
+#include <new>
 #include <optional>
 #include <thread>
 
@@ -75,7 +76,7 @@ class Rows {
 };
 
 /// One device's work on a frame; returns the time in its stages.
-double work(Renderer& renderer, Rows& rows, Frame& frame) {
+double work(Renderer& renderer, Rows& rows, Frame& frame) try {
   double seconds = 0;
   while (const auto strip = rows.take(renderer.max_rows())) {
     const auto stats = renderer.render(*strip, frame, [&](double share) { return rows.keep_going(*strip, share); });
@@ -87,6 +88,9 @@ double work(Renderer& renderer, Rows& rows, Frame& frame) {
     rows.finish(*strip, *stats);
   }
   return seconds;
+} catch (const std::bad_alloc&) {  // which must not leave a thread
+  rows.fail({ErrorClass::resource, "", "out of memory"});
+  return 0;
 }
 
 }  // namespace

@@ -64,7 +64,7 @@ void run_pipeline(const FrameView& frame, const PipelinePlan& plan, Launch&& lau
       }
     };
     if (plan.centres_apart()) {
-      launch_and_count(ObjectIntersection<Instances>{frame});
+      launch(CentreIntersection<Instances>{{frame}});
       write_aovs();
     }
     FrameView at = frame;

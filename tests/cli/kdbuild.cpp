@@ -303,7 +303,7 @@ TEST_SUITE("kdbuild build") {
       conditions.signal_after = std::chrono::milliseconds(after);
       const auto start = std::chrono::steady_clock::now();
       t.fails(kTool, {"build", "long.obj", "-o", "x.nkd"}, ErrorClass::interrupted, {"long.obj"}, conditions);
-      CHECK(std::chrono::steady_clock::now() - start < conditions.signal_after + std::chrono::seconds(3));
+      CHECK(std::chrono::steady_clock::now() - start < conditions.signal_after + std::chrono::seconds(15));
     }
     Conditions killed;
     killed.signal = SIGKILL;

@@ -88,6 +88,8 @@ TEST_SUITE("kdrender film") {
     };
     CHECK(skipped({}));
     CHECK(skipped({"--threads", "1"}));
+    CHECK_FALSE(skipped({"--preview", "p.#.png"}));
+    CHECK(skipped({"--preview", "p.#.png"}));
     CHECK_FALSE(skipped({"--spp", "2"}));
     CHECK(skipped({"--spp", "2"}));
     CHECK_FALSE(skipped({"--spp", "2", "--set", "camera.vertical_fov=30"}));
@@ -104,13 +106,18 @@ TEST_SUITE("kdrender film") {
     s.refuses({"-o", "f.exr", "--frames", "1-2"}, ErrorClass::usage, {"f.exr", "####"});
     s.refuses({"-o", "f.#.exr", "--preview", "p.png", "--frames", "1-2"}, ErrorClass::usage, {"p.png", "####"});
     s.refuses({"--resume", "--check"}, ErrorClass::usage, {"--resume"});
+    s.refuses({"-o", "f.#.exr", "--resume", "--compare", "r.exr"}, ErrorClass::usage, {"--compare"});
+    s.refuses({"-o", "f.#.exr", "--frames", "1-2", "--compare", "r.exr"}, ErrorClass::usage, {"r.exr", "####"});
+    s.refuses({"-o", "f.exr", "--compare", "none.exr"}, ErrorClass::missing, {"none.exr"});
+    s.refuses({"--check", "--stats", "s.json"}, ErrorClass::usage, {"--check"});
     s.film({"-o", "f.#.exr", "--frames", "-2--1"});
     CHECK(s.exists("f.-1.exr"));
   }
 
   TEST_CASE("values of the scene can be set") {
     const Studio s;
-    const ToolRun wide = s.film({"--check", "--set", "film.width=123", "--set", "film.height=45"});
+    const ToolRun wide =
+        s.succeeds(kTool, {"--set", "film.width=123", "film.json", "--check", "--set", "film.height=45"});
     CHECK(wide.out.find("123 x 45") != std::string::npos);
     s.refuses({"--check", "--set", "camera.fov=3"}, ErrorClass::usage, {"camera.fov=3"});
     s.refuses({"--check", "--set", "camera.vertical_fov"}, ErrorClass::usage, {"camera.vertical_fov"});

@@ -85,6 +85,9 @@ TEST_SUITE("kdrender view") {
     };
     CHECK(with_threshold(by.largest + 1e-5) == 0);
     CHECK(with_threshold(by.largest - 1e-5) == 11);
+    s.film({"--size", "32x32", "--crop", "0,0,8,8"});
+    std::filesystem::rename(s.path("o.exr"), s.path("part.exr"));
+    s.refuses({"--size", "32x32", "--crop", "8,8,8,8", "--compare", "part.exr"}, ErrorClass::differs, {"part.exr"});
     s.refuses({"--size", "32x31", "--compare", "reference.exr"}, ErrorClass::differs, {"32 x 32", "32 x 31"});
     s.refuses({"--compare", "none.exr"}, ErrorClass::missing, {"none.exr"});
     s.write("text.exr", "no EXR");

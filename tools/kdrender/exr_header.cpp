@@ -44,9 +44,10 @@ image::Matrix4 world_to_ndc(const scene::Camera& camera, const scene::FilmSize& 
   const double half_height = std::tan(camera.vertical_fov_degrees * std::numbers::pi / 360);
   const double half_width = half_height * film.width / film.height;
   const Vec3d depth = -axes.back;  // what a point is divided by
+  const Vec3d none{0, 0, 0};       // z is 1 before the division, so that the matrix has an inverse
   return matrix_of(
-      {axes.right * (0.5 / half_width) + depth * 0.5, axes.up * (-0.5 / half_height) + depth * 0.5, depth, depth},
-      {0, 0, 0, 0}, camera.position);
+      {axes.right * (0.5 / half_width) + depth * 0.5, axes.up * (-0.5 / half_height) + depth * 0.5, none, depth},
+      {0, 0, 1, 0}, camera.position);
 }
 
 std::string objects_hash(const render::LoadedScene& scene) {

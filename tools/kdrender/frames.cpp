@@ -44,11 +44,14 @@ Result<std::vector<int>> parse_frames(const std::string& text) {
   return frames;
 }
 
-bool is_numbered(const std::string& pattern) { return pattern.find('#') != std::string::npos; }
+bool is_numbered(const std::string& pattern) {
+  const size_t folder = pattern.rfind('/');
+  return pattern.find('#', folder == std::string::npos ? 0 : folder) != std::string::npos;
+}
 
 std::string numbered(const std::string& pattern, int frame) {
   const size_t last = pattern.rfind('#');
-  if (last == std::string::npos) return pattern;
+  if (!is_numbered(pattern)) return pattern;
   const size_t before = pattern.find_last_not_of('#', last);
   const size_t first = before == std::string::npos ? 0 : before + 1;
   return fmt::format("{}{:0{}}{}", pattern.substr(0, first), frame, last - first + 1, pattern.substr(last + 1));

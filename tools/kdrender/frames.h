@@ -11,10 +11,11 @@ namespace kd::tools {
 /// "12", "1-240" or "1-240x2", whole numbers, ascending. ErrorClass::usage for anything else.
 Result<std::vector<int>> parse_frames(const std::string& text);
 
-/// `pattern` with its last run of # replaced by the frame, with as many digits or more: "a.####.exr" to "a.0012.exr".
+/// `pattern` with the last run of # in its file's name replaced by the frame, a sign included as long as the run or
+/// longer: "a.####.exr" to "a.0012.exr".
 std::string numbered(const std::string& pattern, int frame);
 
-/// Whether it has a #.
+/// Whether the file's name, folders apart, has a #.
 bool is_numbered(const std::string& pattern);
 
 }  // namespace kd::tools

@@ -34,24 +34,27 @@ void add_options(CLI::App& app, RenderOptions& o) {
   for (const image::AovRow& row : image::kAovRows) aov_help += fmt::format(" {}", row.name);
   app.add_option("scene", o.scene, "Scene file (JSON, see schema/scene.fbs)")->required();
   app.add_option("-o,--output", o.output, "The EXR to write: R, G, B, A and AOVs, scene-linear")->check(file_name());
-  app.add_option("--preview", o.preview, "Write an 8-bit PNG too, through the gamma stage");
+  app.add_option("--preview", o.preview, "Write an 8-bit PNG too, through the gamma stage")->check(file_name());
   app.add_option("--device", o.device, "auto, cpu, cuda, cuda:N, cuda:all, or a list of these")->capture_default_str();
   app.add_option("--frames", o.frames,
                  "Frames of a film: 12, 1-240 or 1-240x2; a # in an output's name is a digit of them");
   app.add_flag("--resume", o.resume,
                "Leave out frames whose EXR is there, whole, and of this scene and these settings");
   app.add_option("--set", o.overrides, "Change a value of the scene first: PATH=JSON, such as camera.vertical_fov=35")
-      ->take_all();
+      ->take_all()
+      ->allow_extra_args(false);
   app.add_option("--size", o.size, "Size of the film instead of the scene's, such as 1920x1080");
   app.add_option("--crop", o.crop, "Render only this part of the film: COLUMN,ROW,WIDTH,HEIGHT in pixels");
   app.add_option("--spp", o.samples, "Samples a pixel, under a tent filter; 1: its centre")
       ->check(whole_number(1, render::kMaxSamples))
       ->capture_default_str();
   app.add_option("--aov", o.aovs, aov_help);
-  app.add_option("--heatmap", o.heatmap, "Write a PNG of what each pixel's ray costs: nodes and triangles visited");
+  app.add_option("--heatmap", o.heatmap, "Write a PNG of what each pixel's ray costs: nodes and triangles visited")
+      ->check(file_name());
   app.add_option("--gamma", o.gamma, "Gamma of the preview")->check(number(0.1, 10))->capture_default_str();
   app.add_flag("--gamma-exr", o.gamma_on_exr, "Apply the gamma to the EXR as well; its header then says so");
-  app.add_option("--compare", o.reference, "Compare with this EXR's R, G, B and A; exit status 11 if it differs");
+  app.add_option("--compare", o.reference, "Compare with this EXR's R, G, B and A; exit status 11 if it differs")
+      ->check(file_name());
   app.add_option("--threshold", o.threshold, "The largest difference of a channel that --compare lets pass")
       ->check(number(0, 1e30))
       ->capture_default_str();

@@ -1,6 +1,7 @@
 #include "kdrender/outputs.h"
 
 #include <algorithm>
+#include <filesystem>
 
 #include <fmt/format.h>
 
@@ -75,6 +76,9 @@ std::string fingerprint(const RenderOptions& o, const std::string& scene_hash, c
 }
 
 bool is_done(const RenderOptions& o, const std::string& fingerprint) {
+  for (const std::string* name : {&o.preview, &o.heatmap, &o.stats}) {
+    if (!name->empty() && !std::filesystem::exists(*name)) return false;
+  }
   const auto found = image::read_exr_text(o.output, kFingerprint);
   return found && *found == fingerprint;
 }
@@ -91,7 +95,7 @@ Result<uint32_t> write_images(const RenderOptions& o, render::Frame& frame, cons
     if (!written) return written.error();
   }
   if (o.output.empty()) return most;
-  const auto written = image::write_exr(o.output, frame.film, header_of(o, notes));  // last: it says that all is there
+  const auto written = image::write_exr(o.output, frame.film, header_of(o, notes));
   return written ? Result<uint32_t>(most) : written.error();
 }
 
@@ -102,6 +106,9 @@ Result<std::string> compare(const RenderOptions& o, const image::Film& film) {
     return Error{ErrorClass::differs, o.reference,
                  fmt::format("it has {} x {} pixels, the film {} x {}", reference->width, reference->height, film.width,
                              film.height)};
+  }
+  if (reference->column != film.column || reference->row != film.row) {
+    return Error{ErrorClass::differs, o.reference, "it is another part of its picture than the film"};
   }
   const image::Difference difference = image::compare_colour(film, *reference);
   const std::string text = fmt::format("{} pixels differ, by up to {:.6g}, RMSE {:.6g}", difference.pixels,

@@ -13,7 +13,7 @@ Result<render::RenderSettings> settings_of(const RenderOptions& o, const scene::
 std::string fingerprint(const RenderOptions& o, const std::string& scene_hash, const std::string& objects_hash,
                         int frame);
 
-/// Whether the frame's EXR is there, whole, and has this fingerprint.
+/// Whether the frame's EXR is there, whole, and has this fingerprint, and all else that `o` names is there too.
 bool is_done(const RenderOptions& o, const std::string& fingerprint);
 
 /// What a header says beside the film.

@@ -1,6 +1,7 @@
 #include "kdrender/render_command.h"
 
 #include <cstdio>
+#include <filesystem>
 #include <future>
 #include <memory>
 #include <optional>
@@ -23,8 +24,9 @@ namespace kd::tools {
 
 namespace {
 
-/// The options with one frame's names.
+/// The options with one frame's names; those of a still are as they are.
 RenderOptions of_frame(RenderOptions o, int frame) {
+  if (o.frames.empty()) return o;
   for (std::string* name : {&o.output, &o.preview, &o.heatmap, &o.stats, &o.reference}) *name = numbered(*name, frame);
   return o;
 }
@@ -35,9 +37,14 @@ Result<void> check_names(const RenderOptions& o, size_t frames) {
     return Error{ErrorClass::usage, "", "--output is required, or --check, --compare or --heatmap"};
   }
   if (o.resume && o.output.empty()) return Error{ErrorClass::usage, "--resume", "there is no --output to look for"};
-  for (const std::string* name : {&o.output, &o.preview, &o.heatmap, &o.stats}) {
+  if (o.resume && !o.reference.empty()) {
+    return Error{ErrorClass::usage, "--resume", "frames that are left out would not be compared: leave out --compare"};
+  }
+  if (o.check && !o.stats.empty())
+    return Error{ErrorClass::usage, "--check", "it renders nothing to report in --stats"};
+  for (const std::string* name : {&o.output, &o.preview, &o.heatmap, &o.stats, &o.reference}) {
     if (frames > 1 && !name->empty() && !is_numbered(*name)) {
-      return Error{ErrorClass::usage, *name, "several frames would be written here: name it like x.####.exr"};
+      return Error{ErrorClass::usage, *name, "several frames would share it: name it like x.####.exr"};
     }
   }
   return {};
@@ -140,7 +147,7 @@ Result<void> FrameLoop::stand_at(int frame, const std::vector<render::Device>& d
     const auto moved = render::move_to(*loaded_, scene_, frame);
     if (!moved) return moved.error();
     auto followed = group_->follow(*moved);
-    times_.parse = 0;
+    times_.parse = 0;  // was told with the first frame
     times_.load = timer.seconds();
     return followed;
   }
@@ -237,11 +244,17 @@ Result<void> render_command(const RenderOptions& o) {
   const RenderOptions first = of_frame(o, frames->front());
   const std::vector<std::string> outputs{first.output, first.preview, first.heatmap, first.stats};
   if (auto usable = check_outputs(outputs, inputs_of(first, *scene)); !usable) return usable;
+  if (!first.reference.empty() && !std::filesystem::is_regular_file(first.reference)) {
+    return Error{ErrorClass::missing, first.reference, "there is no such picture to compare with"};
+  }
   catch_interrupts();
   const bool text = !o.quiet && o.stats != "-";
   if (o.check) {
     auto loaded = render::load_scene(*scene, *settings, frames->front());
     if (!loaded) return loaded.error();
+    for (int frame : *frames) {
+      if (const auto moved = render::move_to(*loaded, *scene, frame); !moved) return moved.error();
+    }
     if (text) print_contents(o.scene, *loaded);
     return {};
   }

@@ -11,9 +11,9 @@ struct Average {
   FrameView frame;
 
   KD_HD uint32_t operator()(uint32_t pixel) const {
-    const float share = 1 / static_cast<float>(frame.samples);
+    const auto count = static_cast<float>(frame.samples);  // divided by, not multiplied: full coverage is 1
     const Pixel sum = frame.colour[pixel];
-    frame.colour[pixel] = {sum.colour * share, sum.alpha * share};
+    frame.colour[pixel] = {{sum.colour.x / count, sum.colour.y / count, sum.colour.z / count}, sum.alpha / count};
     return 0;
   }
 };

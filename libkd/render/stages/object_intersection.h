@@ -125,4 +125,8 @@ struct ObjectIntersection {
   }
 };
 
+/// The same of a pixel's centre, where that is none of its samples: for AOVs alone, and counted nowhere.
+template <class Instances>
+struct CentreIntersection : ObjectIntersection<Instances> {};
+
 }  // namespace kd::render

@@ -87,7 +87,7 @@ KD_HD inline float arriving(const LightView& light, const ToLight& way) {
   const double s = (-dot(light.axis, way.direction) - light.cos_outer) * light.inverse_width;
   if (s <= 0) return 0;
   if (s < 1) share = share * (s * s * (3 - 2 * s));
-  return static_cast<float>(share);
+  return static_cast<float>(min_of(share, 1e30));  // no infinity, which black would make a NaN of
 }
 
 KD_HD KD_INLINE ToLight to_light(const LightView& light, Vec3d from, double far_away) {
