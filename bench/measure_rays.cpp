@@ -1,7 +1,8 @@
 #include "measure_rays.h"
 
 #include <algorithm>
-#include <charconv>
+
+#include "common/numbers.h"
 
 namespace kd::bench {
 
@@ -14,12 +15,9 @@ double median(std::vector<double> values) {
 Result<ImageSize> parse_size(const std::string& text) {
   constexpr uint64_t kMostPixels = uint64_t{1} << 26;
   const Error refusal{ErrorClass::usage, "--size " + text, "not a size such as 1920x1080, of at most 2^26 pixels"};
-  ImageSize size;
-  const char* end = text.data() + text.size();
-  const auto width = std::from_chars(text.data(), end, size.width);
-  if (width.ec != std::errc{} || width.ptr == end || *width.ptr != 'x') return refusal;
-  const auto height = std::from_chars(width.ptr + 1, end, size.height);
-  if (height.ec != std::errc{} || height.ptr != end) return refusal;
+  const auto sides = tools::parse_numbers(text, 'x');
+  if (!sides || sides->size() != 2) return refusal;
+  const ImageSize size{sides->front(), sides->back()};
   const uint64_t pixels = uint64_t{size.width} * size.height;
   if (size.width > 65536 || size.height > 65536 || pixels < 1 || pixels > kMostPixels) return refusal;
   return size;

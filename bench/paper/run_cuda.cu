@@ -109,11 +109,7 @@ Result<Run> run_on_cuda(const render::LoadedScene& scene, const render::RenderSe
   render::DeviceScene device_scene;
   if (auto created = device_scene.create(scene, stream); !created) return created.error();
   FrameView frame = render::strip_view(scene, settings, {0, scene.film.height});
-  const SceneView counts = frame.scene;
-  frame.scene = device_scene.view();
-  frame.scene.instance_count = counts.instance_count;
-  frame.scene.ambient = counts.ambient;
-  frame.scene.background = counts.background;
+  device_scene.set(frame.scene);
 
   Run out;
   const auto lights = static_cast<uint32_t>(scene.lights.size());

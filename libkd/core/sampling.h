@@ -1,6 +1,6 @@
-// Where the samples of a pixel lie: Sobol's first two dimensions, scrambled in Owen's manner for each pixel anew, warped
-// to a tent. Integers up to the last step, so the same on every device; a sample depends on its pixel and its number, not
-// on how a frame is divided.
+// Where the samples of a pixel lie: Sobol's first two dimensions, scrambled in Owen's manner for each pixel anew,
+// warped to a tent. Integers up to the last step, so the same on every device; a sample depends on its pixel and its
+// number, not on how a frame is divided.
 #pragma once
 
 #include <cmath>

@@ -13,10 +13,10 @@ namespace kd::mesh {
 /// `mesh_of`: per mesh of the file, its index in the asset or kNoIndex if it has no surface. Where no node places a
 /// mesh, each stands once, as it was modelled.
 ///
-/// The camera is the first perspective one. Lights are KHR_lights_punctual, and ours have no falloff: a directional
-/// light's illuminance, and a point light's intensity over the square of its distance to the centre of what is placed
-/// (no less than a tenth of its diagonal), are multiplied by one number, so that the brightest component of all is 1. A
-/// spot light shines like a point light.
+/// The camera is the first perspective one. Lights are KHR_lights_punctual, and become ones without falloff: a
+/// directional light's illuminance, and a point light's intensity over the square of its distance to the centre of what
+/// is placed (no less than a tenth of its diagonal), are multiplied by one number, so that the brightest component of
+/// all is 1. A spot light becomes a point light.
 ///
 /// ErrorClass::mesh for numbers of what is not there and for nodes that are no forest.
 Result<void> place_nodes(const GltfFile& file, const std::string& path, const std::vector<uint32_t>& mesh_of,

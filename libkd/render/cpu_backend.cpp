@@ -35,7 +35,7 @@ class CpuRenderer final : public Renderer {
   CpuRenderer(const LoadedScene& scene, const RenderSettings& settings)
       : scene_(scene), settings_(settings), objects_(scene), instances_(instance_views(scene)) {
     holding_.upload_seconds = opening_.seconds();
-    for (const LoadedObject& object : scene.objects) holding_.object_bytes += object_bytes(object);
+    holding_.object_bytes = object_bytes(scene);
     holding_.scene_bytes = instances_.size() * sizeof(InstanceView) + scene.hierarchy.size() * sizeof(HierarchyNode) +
                            scene.lights.size() * sizeof(LightView);
     holding_.strip_bytes = size_t{scene.window.width} * scene.window.height * bytes_a_pixel(settings);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "scene/camera_axes.h"
 #include "scene/nesting.h"
 
 namespace kd::render {
@@ -69,16 +70,13 @@ Result<void> load_attributes(LoadedObject& object, const Needs& needs, Skipped& 
 }
 
 CameraView camera_view(const scene::Camera& camera, scene::FilmSize film) {
-  const Vec3d forward = normalised(camera.target - camera.position);
-  const Vec3d right = normalised(cross(forward, normalised(camera.up)));
-  const Vec3d up = cross(right, forward);
-  const double half_height = std::tan(camera.vertical_fov_degrees * std::numbers::pi / 360);
-  const double pixel = 2 * half_height / film.height;
+  const scene::CameraAxes axes = scene::camera_axes(camera);
+  const double pixel = 2 * axes.half_height / film.height;
   CameraView view;
   view.position = camera.position;
-  view.right = right * pixel;
-  view.down = up * -pixel;
-  view.corner = forward + view.right * (0.5 - 0.5 * film.width) + view.down * (0.5 - 0.5 * film.height);
+  view.right = axes.right * pixel;
+  view.down = axes.up * -pixel;
+  view.corner = axes.forward + view.right * (0.5 - 0.5 * film.width) + view.down * (0.5 - 0.5 * film.height);
   return view;
 }
 

@@ -14,8 +14,8 @@ PipelinePlan pipeline_plan(const LoadedScene& scene, const RenderSettings& setti
 /// Bytes that a pixel takes in a strip's buffers.
 size_t bytes_a_pixel(const RenderSettings& settings);
 
-/// Traversal's bytes and those of the attribute sections that this render reads.
-uint64_t object_bytes(const LoadedObject& object);
+/// Of all objects: traversal's bytes and those of the attribute sections that this render reads.
+uint64_t object_bytes(const LoadedScene& scene);
 
 /// A frame with buffers for all that is asked for.
 Frame blank_frame(const LoadedScene& scene, const RenderSettings& settings);

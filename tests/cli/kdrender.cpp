@@ -80,9 +80,7 @@ json small_spheres(const Terminal& t) {
 
 json rendered(const Terminal& t, const json& scene, const Arguments& more = {}) {
   t.write("scene.json", scene.dump(1));
-  Arguments arguments{"scene.json", "-o", "o.exr", "--device", "cpu", "--stats", "-"};
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  json report = t.report(kTool, arguments);
+  json report = t.report(kTool, joined({"scene.json", "-o", "o.exr", "--device", "cpu", "--stats", "-"}, more));
   check_report("kdrender-stats", report);
   return report;
 }

@@ -31,9 +31,7 @@ class Studio : public Terminal {
     write("scene.json", quad_scene(kQuadPart));
   }
   void fails_with(const Arguments& more, ErrorClass error_class, const std::vector<std::string>& fragments) const {
-    Arguments arguments{"scene.json"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    fails(kTool, arguments, error_class, fragments);
+    fails(kTool, joined({"scene.json"}, more), error_class, fragments);
   }
 };
 

@@ -39,15 +39,9 @@ class Studio : public Terminal {
     part.erase("box");
     write("film.json", scene.dump(1));
   }
-  ToolRun film(const Arguments& more) const {
-    Arguments arguments{"film.json", "--device", "cpu"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return succeeds(kTool, arguments);
-  }
+  ToolRun film(const Arguments& more) const { return succeeds(kTool, joined({"film.json", "--device", "cpu"}, more)); }
   void refuses(const Arguments& more, ErrorClass error_class, const std::vector<std::string>& fragments) const {
-    Arguments arguments{"film.json", "--device", "cpu"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    fails(kTool, arguments, error_class, fragments);
+    fails(kTool, joined({"film.json", "--device", "cpu"}, more), error_class, fragments);
   }
 };
 
@@ -82,9 +76,8 @@ TEST_SUITE("kdrender film") {
     CHECK(image::read_exr_colour(s.path("f.3.exr")));
     CHECK(s.exists("f.4.exr"));
     const auto skipped = [&](const Arguments& more) {
-      Arguments arguments{"-o", "f.#.exr", "--frames", "1-4", "--resume"};
-      arguments.insert(arguments.end(), more.begin(), more.end());
-      return s.film(arguments).out.find("4 frames were there") != std::string::npos;
+      return s.film(joined({"-o", "f.#.exr", "--frames", "1-4", "--resume"}, more)).out.find("4 frames were there") !=
+             std::string::npos;
     };
     CHECK(skipped({}));
     CHECK(skipped({"--threads", "1"}));

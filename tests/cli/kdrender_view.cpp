@@ -18,17 +18,13 @@ class Studio : public Terminal {
   Studio() { set_up_spheres(); }
 
   image::Film film(const Arguments& more) const {
-    Arguments arguments{"spheres.json", "-o", "o.exr", "--device", "cpu", "--quiet"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    succeeds(kTool, arguments);
+    succeeds(kTool, joined({"spheres.json", "-o", "o.exr", "--device", "cpu", "--quiet"}, more));
     auto film = image::read_exr_colour(path("o.exr"));
     REQUIRE(film);
     return std::move(*film);
   }
   void refuses(const Arguments& more, ErrorClass error_class, const std::vector<std::string>& fragments) const {
-    Arguments arguments{"spheres.json", "--device", "cpu"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    fails(kTool, arguments, error_class, fragments);
+    fails(kTool, joined({"spheres.json", "--device", "cpu"}, more), error_class, fragments);
   }
 };
 
@@ -79,9 +75,9 @@ TEST_SUITE("kdrender view") {
     const image::Difference by = image::compare_colour(film, s.film({"--size", "32x32", "--spp", "4"}));
     CHECK(by.largest > 0.05);
     const auto with_threshold = [&](double threshold) {
-      Arguments arguments{"spheres.json", "--device", "cpu", "--threshold", std::to_string(threshold)};
-      arguments.insert(arguments.end(), blurred.begin(), blurred.end());
-      return s.run(kTool, arguments).status;
+      return s
+          .run(kTool, joined({"spheres.json", "--device", "cpu", "--threshold", std::to_string(threshold)}, blurred))
+          .status;
     };
     CHECK(with_threshold(by.largest + 1e-5) == 0);
     CHECK(with_threshold(by.largest - 1e-5) == 11);

@@ -16,6 +16,11 @@ namespace kd::test {
 
 using Arguments = std::vector<std::string>;
 
+inline Arguments joined(Arguments first, const Arguments& more) {
+  first.insert(first.end(), more.begin(), more.end());
+  return first;
+}
+
 struct ToolRun {
   int status = 0;  // the exit status, or minus the signal that ended it
   std::string out, err;

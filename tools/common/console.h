@@ -37,8 +37,8 @@ Result<void> check_outputs(const std::vector<std::string>& outputs, const std::v
 /// line and a status.
 int run_tool(CLI::App& app, int argc, char** argv, const std::function<int()>& run);
 
-/// A progress bar on stderr, "label  42 %  5 s left", if that is a terminal and not `quiet`; nothing otherwise. Either way it
-/// cancels once the user has pressed Ctrl-C.
+/// A progress bar on stderr, "label  42 %  5 s left", if that is a terminal and not `quiet`; nothing otherwise. Either
+/// way it cancels once the user has pressed Ctrl-C.
 Progress progress_bar(std::string label, bool quiet);
 
 /// From here on Ctrl-C and SIGTERM cancel through `progress_bar` and `interrupted` instead of killing the process.

@@ -1,24 +1,13 @@
 #include "kdrender/exr_header.h"
 
-#include <cmath>
-#include <numbers>
 #include <vector>
 
+#include "scene/camera_axes.h"
 #include "sys/hash.h"
 
 namespace kd::tools {
 
 namespace {
-
-struct Axes {
-  Vec3d right, up, back;
-};
-
-Axes axes_of(const scene::Camera& camera) {
-  const Vec3d back = normalised(camera.position - camera.target);
-  const Vec3d right = normalised(cross(normalised(camera.up), back));
-  return {right, cross(back, right), back};
-}
 
 /// The matrix that takes p to (dot(columns[i], p - origin))_i, and to a fourth coordinate of the same kind.
 image::Matrix4 matrix_of(const Vec3d (&columns)[4], const double (&offsets)[4], Vec3d origin) {
@@ -35,18 +24,17 @@ image::Matrix4 matrix_of(const Vec3d (&columns)[4], const double (&offsets)[4], 
 }  // namespace
 
 image::Matrix4 world_to_camera(const scene::Camera& camera) {
-  const Axes axes = axes_of(camera);
-  return matrix_of({axes.right, axes.up, axes.back, {0, 0, 0}}, {0, 0, 0, 1}, camera.position);
+  const scene::CameraAxes axes = scene::camera_axes(camera);
+  return matrix_of({axes.right, axes.up, -axes.forward, {0, 0, 0}}, {0, 0, 0, 1}, camera.position);
 }
 
 image::Matrix4 world_to_ndc(const scene::Camera& camera, const scene::FilmSize& film) {
-  const Axes axes = axes_of(camera);
-  const double half_height = std::tan(camera.vertical_fov_degrees * std::numbers::pi / 360);
-  const double half_width = half_height * film.width / film.height;
-  const Vec3d depth = -axes.back;  // what a point is divided by
-  const Vec3d none{0, 0, 0};       // z is 1 before the division, so that the matrix has an inverse
+  const scene::CameraAxes axes = scene::camera_axes(camera);
+  const double half_width = axes.half_height * film.width / film.height;
+  const Vec3d depth = axes.forward;  // what a point is divided by
+  const Vec3d none{0, 0, 0};         // z is 1 before the division, so that the matrix has an inverse
   return matrix_of(
-      {axes.right * (0.5 / half_width) + depth * 0.5, axes.up * (-0.5 / half_height) + depth * 0.5, none, depth},
+      {axes.right * (0.5 / half_width) + depth * 0.5, axes.up * (-0.5 / axes.half_height) + depth * 0.5, none, depth},
       {0, 0, 1, 0}, camera.position);
 }
 

@@ -1,33 +1,13 @@
 #include "kdrender/options.h"
 
-#include <charconv>
-
 #include <fmt/format.h>
 
 #include "common/console.h"
+#include "common/numbers.h"
 #include "image/channels.h"
 #include "render/load.h"
 
 namespace kd::tools {
-
-namespace {
-
-/// The whole numbers of `text`, with `separator` between them; nothing if it is anything else.
-std::optional<std::vector<uint32_t>> parse_numbers(const std::string& text, char separator) {
-  std::vector<uint32_t> numbers;
-  const char *at = text.data(), *end = at + text.size();
-  while (true) {
-    uint32_t number = 0;
-    const auto parsed = std::from_chars(at, end, number);
-    if (parsed.ec != std::errc{}) return std::nullopt;
-    numbers.push_back(number);
-    if (parsed.ptr == end) return numbers;
-    if (*parsed.ptr != separator) return std::nullopt;
-    at = parsed.ptr + 1;
-  }
-}
-
-}  // namespace
 
 void add_options(CLI::App& app, RenderOptions& o) {
   std::string aov_help = "AOVs to write as further channels, separated by commas:";

@@ -103,7 +103,7 @@ Result<void> CudaRenderer::open() {
   if (auto created = device_scene_.create(scene_, stream_); !created) return created;
   if (auto created = buffers_.create(scene_, settings_); !created) return created;
   holding_.upload_seconds = timer.seconds();
-  for (const LoadedObject& object : scene_.objects) holding_.object_bytes += object_bytes(object);
+  holding_.object_bytes = object_bytes(scene_);
   holding_.scene_bytes = device_scene_.bytes() - holding_.object_bytes;
   holding_.strip_bytes = buffers_.bytes();
   size_t free = 0, total = 0;
@@ -177,11 +177,7 @@ Result<void> CudaRenderer::download_strip(const FrameView& view, Strip strip, Fr
 Result<RenderStats> CudaRenderer::render(Strip strip, Frame& frame, const Progress& progress) {
   KD_CUDA_TRY(cudaSetDevice(index_), "choosing the device");
   FrameView view = strip_view(scene_, settings_, strip);
-  const SceneView counts = view.scene;
-  view.scene = device_scene_.view();
-  view.scene.instance_count = counts.instance_count;
-  view.scene.ambient = counts.ambient;
-  view.scene.background = counts.background;
+  device_scene_.set(view.scene);
   buffers_.set(view);
   auto stats = run_stages(view, progress);
   if (!stats) return stats;

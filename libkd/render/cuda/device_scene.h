@@ -18,8 +18,14 @@ class DeviceScene {
   Result<void> create(const LoadedScene& scene, cudaStream_t stream);
   /// The same of what has moved, and the lights as they are.
   Result<void> follow(const LoadedScene& scene, const Moved& moved, cudaStream_t stream);
-  /// Its pointers; counts and colours are the caller's.
-  const SceneView& view() const { return view_; }
+  /// Sets what points to memory, and nothing else.
+  void set(SceneView& view) const {
+    view.hierarchy = view_.hierarchy;
+    view.instances = view_.instances;
+    view.objects = view_.objects;
+    view.overrides = view_.overrides;
+    view.lights = view_.lights;
+  }
   size_t bytes() const { return memory_.bytes(); }
 
  private:
@@ -27,7 +33,7 @@ class DeviceScene {
   Result<void> fill(const LoadedScene& scene, cudaStream_t stream);
 
   DeviceMemory memory_;
-  SceneView view_;
+  SceneView view_;                // its pointers alone
   const void* pinned_ = nullptr;  // the scene's hierarchy, if it moves: its copies are then as fast as the bus
   std::vector<DeviceObject> objects_;
   std::vector<ShadedObjectView> object_views_;
