@@ -151,20 +151,22 @@ TEST_CASE("reading asks every 100 ms at most whether to go on, in every format")
 TEST_CASE("reading ends where it is told to, with the class of an interruption") {
   const TempFolder folder;
   const Sheet sheet(folder, 400);
+  int interrupted = 0;  // a fast machine reads the binary formats before it first asks
   for (const char* name : kNames) {
     CAPTURE(name);
     const std::string path = sheet.write(name);
     for (const int last : {1, 2, 4}) {
       int asked = 0;
       const auto asset = read_asset(path, {false, [&](double) { return ++asked < last; }}, Split::none);
-      if (last == 1) CHECK(asked > 0);
       CHECK(asked <= last);
       if (asked < last) continue;  // all was read by then
       REQUIRE_FALSE(asset);
+      ++interrupted;
       CHECK(asset.error().error_class == ErrorClass::interrupted);
       CHECK(asset.error().line().find(path) == 0);
     }
   }
+  CHECK(interrupted > 0);
 }
 
 TEST_CASE("looking for dependencies can be cancelled") {
