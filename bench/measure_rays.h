@@ -29,6 +29,7 @@ struct Effort {
   int warm_ups = 3;
   int repeats = 10;          // >= 1
   bool count_steps = false;  // CPU only
+  TriangleLayout layout = TriangleLayout::expanded;
 };
 
 /// What one class of rays came to.

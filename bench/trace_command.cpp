@@ -23,7 +23,7 @@ namespace {
 using tools::Json;
 
 struct Options : RayOptions {
-  std::string object, rays, camera, size = "1920x1080", mode = "closest", test, hits, json;
+  std::string object, rays, camera, size = "1920x1080", mode = "closest", test, layout = "expanded", hits, json;
 };
 
 Result<std::vector<render::RayRecord>> read_rays(const std::string& path) {
@@ -117,6 +117,7 @@ Json report_json(const Options& o, const Subject& subject, const Traced& traced)
          {"triangles", triangles},
          {"vertex_form", kd::name_of(subject.object.geometry().form)},
          {"triangle_test", name_of(subject.test)},
+         {"layout", name_of(o.effort.layout)},
          {"device", subject.device.description},
          {"warm_ups", o.effort.warm_ups},
          {"repeats", o.effort.repeats},
@@ -129,9 +130,10 @@ Json report_json(const Options& o, const Subject& subject, const Traced& traced)
 
 void print_report(const Json& report) {
   for (const Json& result : report["results"]) print_result(result);
-  fmt::print("object on the device: {} bytes, {:.1f} a triangle; vertices: {}, triangle test: {}\n",
+  fmt::print("object on the device: {} bytes, {:.1f} a triangle; layout: {}; vertices: {}, triangle test: {}\n",
              report["device_bytes"].get<uint64_t>(), report["device_bytes_per_triangle"].get<double>(),
-             report["vertex_form"].get<std::string>(), report["triangle_test"].get<std::string>());
+             report["layout"].get<std::string>(), report["vertex_form"].get<std::string>(),
+             report["triangle_test"].get<std::string>());
 }
 
 /// The hits of all classes, one after the other.
@@ -186,10 +188,15 @@ Command trace_command(CLI::App& app) {
                     ", the last two in float32, as baselines; by default exact, or woop for an "
                     "object of float32 vertices");
   add_ray_options(*c, *o);
+  c->add_option("--layout", o->layout,
+                "How triangles lie in memory: expanded, 48 bytes each, or compact, 12 and 8 a vertex")
+      ->check(CLI::IsMember({"expanded", "compact"}))
+      ->capture_default_str();
   c->add_flag("--count", o->effort.count_steps, "Count nodes, leaves and triangles a ray (CPU)");
   c->add_option("--hits", o->hits, "Write the hits: float t, int32 primitive, float u, v, 16 bytes each");
   c->add_option("--json", o->json, "Write a JSON report to this file, or to stdout (-)");
   return {c, [o] {
+            if (o->layout == "compact") o->effort.layout = TriangleLayout::compact;
             const auto done = trace(*o);
             return done ? 0 : tools::fail(kKdbench, done.error());
           }};

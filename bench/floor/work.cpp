@@ -83,7 +83,7 @@ void trace_warp(const render::TraceView& view, std::span<const render::RayRecord
     Lane& lane = warp[i];
     lane.events.clear();
     lane.at = 0;
-    lane.hit = render::trace_ray<mode, ExactTest>(view, rays[i], lane).primitive >= 0;
+    lane.hit = render::trace_ray<mode, ExactTest, TriangleLayout::expanded>(view, rays[i], lane).primitive >= 0;
     work.rays += of_one(lane);
   }
   work.warps += in_lockstep(std::span(warp).first(rays.size()));
@@ -110,11 +110,9 @@ Cost Work::cost(const KernelCosts& c) const {
 }
 
 RayWork count_work(const nkd::ObjectFile& object, std::span<const render::RayRecord> rays, RayMode mode) {
-  const nkd::Geometry& geometry = object.geometry();
   const Lattice& lattice = object.summary().lattice;
-  const HugeArray<TriangleVertices> triangles = render::expand_triangles(geometry);
-  const render::TraceView view{{geometry.nodes.data(), geometry.references.data(), triangles.data(), lattice.bits},
-                               invert(lattice.frame())};
+  const render::HostObject ready(object.geometry(), TriangleLayout::expanded);
+  const render::TraceView view{ready.view(), invert(lattice.frame())};
   RayWork total;
   std::mutex mutex;
   parallel_ranges((rays.size() + kLanes - 1) / kLanes, 64, [&](size_t begin, size_t end) {

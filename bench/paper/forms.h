@@ -88,10 +88,10 @@ void run_form(Form form, const StripView& strip, uint32_t lights, const Launch& 
       return run_reduced<AllInstances, false>(strip, lights, launch);
     case Form::hierarchy:
       return alone ? run_reduced<OnlyInstance, false>(strip, lights, launch)
-                   : run_reduced<render::ThroughHierarchy, false>(strip, lights, launch);
+                   : run_reduced<render::ThroughHierarchy<>, false>(strip, lights, launch);
     case Form::first_occluder:
       return alone ? run_reduced<OnlyInstance, true>(strip, lights, launch)
-                   : run_reduced<render::ThroughHierarchy, true>(strip, lights, launch);
+                   : run_reduced<render::ThroughHierarchy<>, true>(strip, lights, launch);
   }
 }
 

@@ -20,7 +20,7 @@ void for_each_element(const Stage& stage, uint32_t pixels, uint32_t planes) {
 }  // namespace
 
 Result<Run> run_on_cpu(const render::LoadedScene& scene, const render::RenderSettings& settings, const Job& job) {
-  const render::ExpandedObjects objects(scene);
+  const render::HostObjects objects(scene, TriangleLayout::expanded);
   const std::vector<render::InstanceView> instances = instance_views(scene);
   const size_t pixels = size_t{scene.film.width} * scene.film.height;
   Run out;

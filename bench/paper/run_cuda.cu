@@ -107,7 +107,7 @@ Result<Run> run_on_cuda(const render::LoadedScene& scene, const render::RenderSe
   render::Stream stream;
   KD_CUDA_TRY(stream.create(), "starting");
   render::DeviceScene device_scene;
-  if (auto created = device_scene.create(scene, stream); !created) return created.error();
+  if (auto created = device_scene.create(scene, TriangleLayout::expanded, stream); !created) return created.error();
   FrameView frame = render::strip_view(scene, settings, {0, scene.film.height});
   device_scene.set(frame.scene);
 

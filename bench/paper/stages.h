@@ -17,7 +17,7 @@ using render::Excluded;
 using render::FrameView;
 using render::kNone;
 using render::LightView;
-using render::OnlyInstance;
+using OnlyInstance = render::OnlyInstance<>;
 using render::SceneView;
 using render::Surface;
 using render::SurfaceHit;
@@ -46,6 +46,8 @@ KD_HD KD_INLINE SceneView only(SceneView scene, uint32_t instance) {
 
 /// Has the interface of render::ThroughHierarchy: every instance, wherever it is.
 struct AllInstances {
+  static constexpr TriangleLayout kLayout = TriangleLayout::expanded;
+
   template <class Visit>
   KD_HD static void for_each(const SceneView& scene, const Ray&, const double&, const Visit& visit) {
     for (uint32_t i = 0; i < scene.instance_count; ++i) {

@@ -42,7 +42,7 @@ struct StackEntry {
 /// there. Returns kNoTriangle if there is none. Of two triangles at the same distance (as Test::meets tells it) the
 /// lower index wins, so the answer depends on no order of visits. `excluded`: a triangle that is never met (a shadow
 /// ray's own), or kNoTriangle.
-template <RayMode mode, class Test = ExactTest, class Counter>
+template <RayMode mode, class Test = ExactTest, TriangleLayout layout = TriangleLayout::expanded, class Counter>
 KD_HD inline uint32_t traverse(const ObjectView& object, const LatticeRay& ray, float s_limit, uint32_t excluded,
                                Counter& counter) {
   using namespace detail;
@@ -87,8 +87,8 @@ KD_HD inline uint32_t traverse(const ObjectView& object, const LatticeRay& ray, 
       const uint32_t candidate = object.references[r];
       counter.triangle();
       typename Test::Distance s;
-      if (candidate == excluded || !test.template meets<mode>(load(object.triangles + candidate), s_best, s, counter))
-        continue;
+      if (candidate == excluded) continue;
+      if (!test.template meets<mode>(object.triangle<layout>(candidate), s_best, s, counter)) continue;
       if (s < ray.s_min || s > nearest) continue;
       if constexpr (mode == RayMode::any) return candidate;
       if (s < nearest || candidate < best) {

@@ -38,6 +38,8 @@ struct Geometry {
   /// As many as (number of vertices - 1) has, at least 1.
   int corner_bits() const { return corner_bits_for(vertex_count()); }
   size_t triangle_count() const { return triple_count(triangles.size(), corner_bits()); }
+  /// Of the compact layout.
+  size_t vertex_words() const { return vertex_count() * CompactTriangles::words_a_vertex(vertex_bits()); }
   PackedTriangles packed() const { return {{triangles.data(), corner_bits()}, {vertices.data(), vertex_bits()}, form}; }
 
   static int corner_bits_for(size_t vertex_count) {

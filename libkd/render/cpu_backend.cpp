@@ -30,12 +30,15 @@ uint64_t for_each_pixel(const Stage& stage, size_t pixels, SharedProgress& progr
   return total;
 }
 
+TriangleLayout layout_of(const RenderSettings& settings) { return settings.layout.value_or(TriangleLayout::expanded); }
+
 class CpuRenderer final : public Renderer {
  public:
   CpuRenderer(const LoadedScene& scene, const RenderSettings& settings)
-      : scene_(scene), settings_(settings), objects_(scene), instances_(instance_views(scene)) {
+      : scene_(scene), settings_(settings), objects_(scene, layout_of(settings)), instances_(instance_views(scene)) {
     holding_.upload_seconds = opening_.seconds();
-    holding_.object_bytes = object_bytes(scene);
+    holding_.object_bytes = object_bytes(scene, layout_of(settings));
+    holding_.layout = layout_of(settings);
     holding_.scene_bytes = instances_.size() * sizeof(InstanceView) + scene.hierarchy.size() * sizeof(HierarchyNode) +
                            scene.lights.size() * sizeof(LightView);
     holding_.strip_bytes = size_t{scene.window.width} * scene.window.height * bytes_a_pixel(settings);
@@ -53,7 +56,7 @@ class CpuRenderer final : public Renderer {
   Timer opening_;
   const LoadedScene& scene_;
   RenderSettings settings_;
-  ExpandedObjects objects_;
+  HostObjects objects_;
   std::vector<InstanceView> instances_;
   std::vector<SurfaceHit> hits_;
   Holding holding_;
@@ -68,6 +71,7 @@ Result<RenderStats> CpuRenderer::render(Strip strip, Frame& frame, const Progres
     targets.push_back({buffer.aov, buffer.words.data() + components * first});
   }
   FrameView view = strip_view(scene_, settings_, strip);
+  view.scene.layout = holding_.layout;
   view.scene.hierarchy = scene_.hierarchy.data();
   view.scene.instances = instances_.data();
   view.scene.objects = objects_.views.data();

@@ -17,12 +17,12 @@ struct StepCounter {
   void evaluated_in_double() {}
 };
 
-template <RayMode mode, class Test>
+template <RayMode mode, class Test, TriangleLayout layout>
 void trace_all(const TraceView& view, const TraceJob& job, TraceOutcome& out) {
   const auto pass = [&] {
     parallel_ranges(job.rays.size(), 256, [&](size_t begin, size_t end) {
       NoCounter counter;
-      for (size_t i = begin; i < end; ++i) out.hits[i] = trace_ray<mode, Test>(view, job.rays[i], counter);
+      for (size_t i = begin; i < end; ++i) out.hits[i] = trace_ray<mode, Test, layout>(view, job.rays[i], counter);
     });
   };
   for (int i = 0; i < job.warm_ups; ++i) pass();
@@ -33,7 +33,7 @@ void trace_all(const TraceView& view, const TraceJob& job, TraceOutcome& out) {
   }
   if (!job.count_steps) return;
   StepCounter counter;
-  for (const RayRecord& ray : job.rays) trace_ray<mode, Test>(view, ray, counter);
+  for (const RayRecord& ray : job.rays) trace_ray<mode, Test, layout>(view, ray, counter);
   out.steps = counter.counts;
 }
 
@@ -44,15 +44,14 @@ Result<TraceOutcome> cpu_trace(const nkd::ObjectFile& object, const TraceJob& jo
   if (!sources) return sources.error();
   const nkd::Geometry& geometry = object.geometry();
   const Lattice& lattice = object.summary().lattice;
-  const HugeArray<TriangleVertices> triangles = expand_triangles(geometry);
-  const TraceView view{{geometry.nodes.data(), geometry.references.data(), triangles.data(), lattice.bits},
-                       invert(lattice.frame()),
-                       sources->empty() ? nullptr : sources->data()};
+  const HostObject ready(geometry, job.layout);
+  const TraceView view{ready.view(), invert(lattice.frame()), sources->empty() ? nullptr : sources->data()};
   TraceOutcome out;
   out.hits.resize(job.rays.size());
-  out.device_bytes =
-      geometry.nodes.size_bytes() + geometry.references.size_bytes() + triangles.size() * sizeof(TriangleVertices);
-  with_kernel(job, [&]<RayMode mode, class Test>() { trace_all<mode, Test>(view, job, out); });
+  out.device_bytes = traversal_bytes(geometry, job.layout);
+  with_kernel(job, [&]<RayMode mode, class Test>() {
+    with_layout(job.layout, [&]<TriangleLayout layout>() { trace_all<mode, Test, layout>(view, job, out); });
+  });
   return out;
 }
 

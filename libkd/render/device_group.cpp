@@ -168,6 +168,7 @@ Holding DeviceGroup::holding() const {
   for (const auto& renderer : renderers_) {
     const Holding& one = renderer->holding();
     all.upload_seconds += one.upload_seconds;
+    if (one.layout == TriangleLayout::compact) all.layout = one.layout;
     all.object_bytes += one.object_bytes;
     all.scene_bytes += one.scene_bytes;
     all.strip_bytes += one.strip_bytes;

@@ -1,4 +1,4 @@
-// What a loaded object still lacks before the CPU can trace it: its triangles as corners instead of indices.
+// What a loaded object still lacks before it can be traced: its triangles, in a layout.
 #pragma once
 
 #include <vector>
@@ -10,14 +10,32 @@
 
 namespace kd::render {
 
+/// Bytes of what traversal reads: nodes, references, triangles.
+uint64_t traversal_bytes(const nkd::Geometry& geometry, TriangleLayout layout);
+
 /// The triangles of an object in lattice coordinates, in the object's order; a parallel loop.
 HugeArray<TriangleVertices> expand_triangles(const nkd::Geometry& geometry);
 
-/// A scene's objects as the stages see them: sections where they are mapped, triangles expanded.
-struct ExpandedObjects {
-  explicit ExpandedObjects(const LoadedScene& scene);
+/// An object as the CPU traverses it: nodes and references where they are mapped, triangles in a layout.
+class HostObject {
+ public:
+  HostObject(const nkd::Geometry& geometry, TriangleLayout layout);
 
-  std::vector<HugeArray<TriangleVertices>> triangles;
+  /// Valid as long as this and the geometry's sections are.
+  ObjectView view() const;
+
+ private:
+  nkd::Geometry geometry_;
+  HugeArray<TriangleVertices> triangles_;  // expanded
+  HugeArray<uint32_t> corners_;            // compact
+  HugeArray<VertexWord> vertices_;
+};
+
+/// A scene's objects as the stages see them.
+struct HostObjects {
+  HostObjects(const LoadedScene& scene, TriangleLayout layout);
+
+  std::vector<HostObject> objects;  // those that were opened
   std::vector<ShadedObjectView> views;
 };
 

@@ -24,7 +24,8 @@ struct RenderSettings {
   bool preview = false;
   double gamma = 2.2;  // > 0; of the preview, and of the film if gamma_on_film
   bool gamma_on_film = false;
-  std::optional<image::Window> crop;  // of the film, and the only part that is rendered; not empty, within the film
+  std::optional<TriangleLayout> layout;  // none: expanded, or compact on a device that has no memory for that
+  std::optional<image::Window> crop;     // of the film, and the only part that is rendered; not empty, within the film
 };
 
 /// One object's sections that this render reads; the others are empty and stay on disk.

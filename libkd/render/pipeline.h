@@ -78,11 +78,13 @@ void run_pipeline(const FrameView& frame, const PipelinePlan& plan, Launch&& lau
     if (plan.samples > 1) launch(Average{at});
     if (!plan.centres_apart()) write_aovs();
   };
-  if (frame.scene.instance_count == 1) {
-    traced_stages(OnlyInstance{});
-  } else {
-    traced_stages(ThroughHierarchy{});
-  }
+  with_layout(frame.scene.layout, [&]<TriangleLayout layout>() {
+    if (frame.scene.instance_count == 1) {
+      traced_stages(OnlyInstance<layout>{});
+    } else {
+      traced_stages(ThroughHierarchy<layout>{});
+    }
+  });
   if (plan.gamma_on_preview) launch(GammaPreview{frame});
   if (plan.gamma_on_film) launch(GammaFilm{frame});
 }

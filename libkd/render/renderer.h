@@ -33,7 +33,8 @@ struct RenderStats {
 
 /// What opening took, and what is held.
 struct Holding {
-  double upload_seconds = 0;  // objects to the device, expanded
+  double upload_seconds = 0;  // objects to the device, in their layout
+  TriangleLayout layout = TriangleLayout::expanded;
   uint64_t object_bytes = 0;  // nodes, references, triangles, attributes
   uint64_t scene_bytes = 0;   // instances, their hierarchy, lights
   uint64_t strip_bytes = 0;   // hits, film, preview, AOVs

@@ -1,5 +1,7 @@
 #include "render/strip.h"
 
+#include "render/expand.h"
+
 namespace kd::render {
 
 FrameView strip_view(const LoadedScene& scene, const RenderSettings& settings, Strip strip) {
@@ -26,15 +28,14 @@ size_t bytes_a_pixel(const RenderSettings& settings) {
   return bytes;
 }
 
-uint64_t object_bytes(const LoadedScene& scene) {
+uint64_t object_bytes(const LoadedScene& scene, TriangleLayout layout) {
   uint64_t bytes = 0;
   for (const LoadedObject& object : scene.objects) {
     if (!object.file) continue;
-    const nkd::Geometry& g = object.file->geometry();
     const nkd::Attributes& a = object.attributes;
-    bytes += g.nodes.size_bytes() + g.references.size_bytes() + g.triangle_count() * sizeof(TriangleVertices) +
-             a.source_primitives.size_bytes() + a.normals.size_bytes() + a.normal_indices.size_bytes() +
-             a.materials.size_bytes() + a.material_ids.size_bytes();
+    bytes += traversal_bytes(object.file->geometry(), layout) + a.source_primitives.size_bytes() +
+             a.normals.size_bytes() + a.normal_indices.size_bytes() + a.materials.size_bytes() +
+             a.material_ids.size_bytes();
   }
   return bytes;
 }

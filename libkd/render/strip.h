@@ -15,7 +15,7 @@ PipelinePlan pipeline_plan(const LoadedScene& scene, const RenderSettings& setti
 size_t bytes_a_pixel(const RenderSettings& settings);
 
 /// Of all objects: traversal's bytes and those of the attribute sections that this render reads.
-uint64_t object_bytes(const LoadedScene& scene);
+uint64_t object_bytes(const LoadedScene& scene, TriangleLayout layout);
 
 /// A frame with buffers for all that is asked for.
 Frame blank_frame(const LoadedScene& scene, const RenderSettings& settings);

@@ -37,7 +37,7 @@ struct TraceView {
 /// Which triangle test the kernel runs. All but the exact one are baselines, and take a ray that is not snapped.
 enum class TriangleTest { exact, moller_trumbore, woop };
 
-template <RayMode mode, class Test, class Counter>
+template <RayMode mode, class Test, TriangleLayout layout, class Counter>
 KD_HD inline HitRecord trace_ray(const TraceView& view, const RayRecord& r, Counter& counter) {
   const Vec3d origin = view.to_lattice.apply_point({r.ox, r.oy, r.oz});
   const Vec3d direction = view.to_lattice.apply_vector({r.dx, r.dy, r.dz});
@@ -46,9 +46,9 @@ KD_HD inline HitRecord trace_ray(const TraceView& view, const RayRecord& r, Coun
   const bool enters = Test::kExact ? snap_ray(origin, direction, r.t_min, r.t_max, view.object.bits, ray)
                                    : float_ray(origin, direction, r.t_min, r.t_max, view.object.bits, ray);
   if (!enters) return miss;
-  const uint32_t triangle = traverse<mode, Test>(view.object, ray, ray.s_max, kNoTriangle, counter);
+  const uint32_t triangle = traverse<mode, Test, layout>(view.object, ray, ray.s_max, kNoTriangle, counter);
   if (triangle == kNoTriangle) return miss;
-  const auto hit = Test{ray}.locate(load(view.object.triangles + triangle));
+  const auto hit = Test{ray}.locate(view.object.triangle<layout>(triangle));
   const uint32_t source = view.source_primitives ? view.source_primitives[triangle] : triangle;
   return {static_cast<float>(ray.t_at(hit.s)), static_cast<int32_t>(source), static_cast<float>(hit.u),
           static_cast<float>(hit.v)};
@@ -61,9 +61,10 @@ struct TraceJob {
   int repeats = 10;                         // >= 1
   bool count_steps = false;                 // CPU only: one more pass that counts
   TriangleTest test = TriangleTest::exact;  // of float32 vertices the exact test is none
+  TriangleLayout layout = TriangleLayout::expanded;
 };
 
-/// Calls visit.operator()<mode, Test>() for the kernel that a job asks for.
+/// Calls visit.operator()<mode, Test>() for the kernel that a job asks for, in either layout.
 template <class Visit>
 void with_kernel(const TraceJob& job, Visit&& visit) {
   const auto with_mode = [&]<class Test>() {

@@ -49,6 +49,7 @@ struct SceneView {
   const Material* overrides = nullptr;
   const LightView* lights = nullptr;
   uint32_t instance_count = 0;
+  TriangleLayout layout = TriangleLayout::expanded;  // of all objects
   Vec3f ambient;
   Vec3f background;
 };

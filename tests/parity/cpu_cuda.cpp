@@ -18,9 +18,7 @@ size_t differing(const std::vector<T>& a, const std::vector<T>& b) {
   return count;
 }
 
-void check_same(const std::string& name, const scene::Scene& scene, const render::Device& cpu,
-                const render::Device& cuda) {
-  const render::Frame a = render_all(scene, cpu), b = render_all(scene, cuda);
+void check_same(const std::string& name, const render::Frame& a, const render::Frame& b) {
   CHECK_MESSAGE(differing(a.film.colour, b.film.colour) == 0, name);
   CHECK_MESSAGE(differing(a.preview, b.preview) == 0, name);
   REQUIRE(a.film.aovs.size() == b.film.aovs.size());
@@ -30,8 +28,15 @@ void check_same(const std::string& name, const scene::Scene& scene, const render
   }
   CHECK(a.stats.primary_hits == b.stats.primary_hits);
   CHECK(a.stats.shadow_rays == b.stats.shadow_rays);
-  MESSAGE(name << ": the same, " << a.film.width << " x " << a.film.height << ", " << a.stats.primary_hits << " hits, "
-               << a.stats.shadow_rays << " shadow rays");
+}
+
+void check_same(const std::string& name, const scene::Scene& scene, const render::Device& cpu,
+                const render::Device& cuda) {
+  const render::Frame a = render_all(scene, cpu), b = render_all(scene, cuda);
+  check_same(name, a, b);
+  check_same(name + ", compact", a, render_all(scene, cuda, TriangleLayout::compact));
+  MESSAGE(name << ": the same in both layouts, " << a.film.width << " x " << a.film.height << ", "
+               << a.stats.primary_hits << " hits, " << a.stats.shadow_rays << " shadow rays");
 }
 
 }  // namespace

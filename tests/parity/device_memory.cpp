@@ -79,6 +79,8 @@ TEST_CASE("a GPU that is short of memory") {
     MESSAGE("two renderers: " << two->strips() << " strips, the same frame");
     CHECK(two->strips() > 1);
   }
+  const render::Holding expanded = roomy->holding();
+  CHECK(expanded.layout == TriangleLayout::expanded);
   roomy = Error{};  // gives its memory back
   {
     const MemoryHog hog(64 << 20);
@@ -87,6 +89,14 @@ TEST_CASE("a GPU that is short of memory") {
     CHECK(same(*tight->render({}), *whole));
     MESSAGE("64 MiB left: " << tight->strips() << " strips, the same frame");
     CHECK(tight->strips() > 1);
+  }
+  {  // What the expanded objects alone would take.
+    const MemoryHog hog(expanded.object_bytes);
+    auto tight = render_on({*cuda}, false);
+    REQUIRE_MESSAGE(tight, (tight ? "" : tight.error().line()));
+    CHECK(tight->holding().layout == TriangleLayout::compact);
+    CHECK(same(*tight->render({}), *whole));
+    MESSAGE("too little for expanded triangles: compact, " << tight->strips() << " strips, the same frame");
   }
   {
     const MemoryHog hog(1 << 20);

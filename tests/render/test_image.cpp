@@ -212,7 +212,7 @@ TEST_CASE("image: gamma on the preview and on the film") {
   expect(Rendered(s, settings).colour(7), {0.25, 0.5, 4});
 }
 
-TEST_CASE("image: the same for 1 and 8 threads, and from run to run") {
+TEST_CASE("image: the same for 1 and 8 threads, from run to run, and in either layout of triangles") {
   const Stage stage;
   const Contents c(soup_shape(21, 300, Soup::mixed, 3), 21);
   Random random(5);
@@ -233,6 +233,8 @@ TEST_CASE("image: the same for 1 and 8 threads, and from run to run") {
     const ThreadLimit limit(threads);
     runs.emplace_back(s, settings);
   }
+  settings.layout = TriangleLayout::compact;
+  runs.emplace_back(s, settings);
   CHECK(runs[0].frame.stats.primary_hits > 1000);
   for (const Rendered& r : runs) {
     CHECK(same_film(r.frame.film, runs[0].frame.film));

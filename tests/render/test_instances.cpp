@@ -117,10 +117,10 @@ TEST_CASE("instances: the only one, with a hierarchy and without") {
     for (int k = 0; k < 500; ++k) {
       const Vec3d origin = random.vector(14), target = random.vector(10);
       const Ray ray{origin, target - origin, 0, random.chance(0.2) ? random.real(0, 2) : 1e300};
-      const render::SurfaceHit expected = render::closest_hit<render::ThroughHierarchy>(view, ray);
-      const render::SurfaceHit found = render::closest_hit<render::OnlyInstance>(view, ray);
+      const render::SurfaceHit expected = render::closest_hit<render::ThroughHierarchy<>>(view, ray);
+      const render::SurfaceHit found = render::closest_hit<render::OnlyInstance<>>(view, ray);
       wrong += found.instance != expected.instance || found.triangle != expected.triangle || found.t != expected.t;
-      wrong += render::any_hit<render::OnlyInstance>(view, ray, {}) != (expected.instance != render::kNone);
+      wrong += render::any_hit<render::OnlyInstance<>>(view, ray, {}) != (expected.instance != render::kNone);
       hits += expected.instance != render::kNone;
     }
   }

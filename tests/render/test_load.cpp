@@ -45,7 +45,7 @@ TEST_CASE("load: black lights are left out") {
   const Rendered r(s, {});
   CHECK(r.scene.lights.size() == 1);
   CHECK(r.scene.skipped.black_lights == 2);
-  const std::string_view lighting = render::Lighting<render::OnlyInstance>::kName;
+  const std::string_view lighting = render::Lighting<render::OnlyInstance<>>::kName;
   for (const render::StageTime& stage : r.frame.stats.stages) {
     if (stage.stage == lighting) CHECK(stage.launches == 1);
   }

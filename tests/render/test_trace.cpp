@@ -2,8 +2,10 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cstring>
 
 #include "render/cpu_backend.h"
+#include "render/expand.h"
 #include "worlds.h"
 
 using namespace kd;
@@ -17,6 +19,25 @@ TEST_CASE("trace: vertices expand to what was packed, at every width") {
     for (size_t i = 0; i < expected.size(); ++i) {
       TriangleVertices t;
       c.geometry().packed().expand(i, t);
+      REQUIRE(t.a == expected[i].a);
+      REQUIRE(t.b == expected[i].b);
+      REQUIRE(t.c == expected[i].c);
+    }
+  }
+}
+
+TEST_CASE("trace: the compact layout gives the same triangles, at every width") {
+  for (const int bits : {1, 6, 10, 16, 20, 21, 22, 24}) {
+    CAPTURE(bits);
+    const Shape shape = soup_shape(bits, 60, Soup::mixed, 1);
+    const Contents c(shape, bits, false);
+    const std::vector<TriangleVertices> expected = expanded(shape);
+    const render::HostObject compact(c.geometry(), TriangleLayout::compact);
+    const ObjectView view = compact.view();
+    REQUIRE(view.triangles == nullptr);
+    CHECK(view.compact.narrow == (bits <= 21));
+    for (size_t i = 0; i < expected.size(); ++i) {
+      const TriangleVertices t = view.triangle(i);
       REQUIRE(t.a == expected[i].a);
       REQUIRE(t.b == expected[i].b);
       REQUIRE(t.c == expected[i].c);
@@ -48,6 +69,12 @@ TEST_CASE("trace: hits are those of looking at every triangle, numbered as in th
     REQUIRE(closest);
     REQUIRE(any);
     REQUIRE(closest->hits.size() == rays.size());
+    job.layout = TriangleLayout::compact;
+    job.mode = RayMode::closest;
+    const auto compact = render::cpu_trace(*file, job, 0);
+    REQUIRE(compact);
+    CHECK(std::memcmp(compact->hits.data(), closest->hits.data(), rays.size() * sizeof(render::HitRecord)) == 0);
+    CHECK(compact->device_bytes < closest->device_bytes);
     CHECK(closest->seconds.size() == 2);
     CHECK(closest->steps.triangles > 0);
     CHECK(any->steps.triangles <= closest->steps.triangles);

@@ -88,8 +88,9 @@ scene::Scene object_scene(const std::string& object, const CameraFile& camera) {
   return s;
 }
 
-render::Frame render_all(const scene::Scene& scene, const render::Device& device) {
+render::Frame render_all(const scene::Scene& scene, const render::Device& device, TriangleLayout layout) {
   render::RenderSettings settings;
+  settings.layout = layout;
   for (const image::AovRow& row : image::kAovRows) settings.aovs.push_back(row.aov);
   settings.preview = true;
   auto loaded = render::load_scene(scene, settings);

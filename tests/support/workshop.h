@@ -59,6 +59,7 @@ CameraFile read_camera_file(const std::filesystem::path& path);
 scene::Scene object_scene(const std::string& object, const CameraFile& camera);
 
 /// Renders with every AOV and a preview; fails the test on any error.
-render::Frame render_all(const scene::Scene& scene, const render::Device& device);
+render::Frame render_all(const scene::Scene& scene, const render::Device& device,
+                         TriangleLayout layout = TriangleLayout::expanded);
 
 }  // namespace kd::test

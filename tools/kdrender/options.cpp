@@ -16,6 +16,12 @@ void add_options(CLI::App& app, RenderOptions& o) {
   app.add_option("-o,--output", o.output, "The EXR to write: R, G, B, A and AOVs, scene-linear")->check(file_name());
   app.add_option("--preview", o.preview, "Write an 8-bit PNG too, through the gamma stage")->check(file_name());
   app.add_option("--device", o.device, "auto, cpu, cuda, cuda:N, cuda:all, or a list of these")->capture_default_str();
+  app.add_option(
+         "--layout", o.layout,
+         "How triangles lie in memory: expanded; compact, about half the bytes and slower; or auto, compact where "
+         "a GPU has too little memory for expanded")
+      ->check(CLI::IsMember({"auto", "expanded", "compact"}))
+      ->capture_default_str();
   app.add_option("--frames", o.frames,
                  "Frames of a film: 12, 1-240 or 1-240x2; a # in an output's name is a digit of them");
   app.add_flag("--resume", o.resume,

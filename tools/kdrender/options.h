@@ -17,7 +17,7 @@ namespace kd::tools {
 struct RenderOptions {
   std::string scene, output, preview, heatmap, stats, aovs, reference, size, crop, frames;
   std::vector<std::string> overrides;  // "path=value"
-  std::string device = "auto";
+  std::string device = "auto", layout = "auto";
   uint32_t samples = 1;
   double gamma = 2.2;
   double threshold = 0;

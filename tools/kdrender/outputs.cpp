@@ -59,6 +59,7 @@ Result<render::RenderSettings> settings_of(const RenderOptions& o, const scene::
   settings.preview = !o.preview.empty();
   settings.gamma = o.gamma;
   settings.gamma_on_film = o.gamma_on_exr;
+  if (o.layout != "auto") settings.layout = o.layout == "compact" ? TriangleLayout::compact : TriangleLayout::expanded;
   if (!o.crop.empty()) {
     auto crop = parse_crop(o.crop, film);
     if (!crop) return crop.error();

@@ -63,6 +63,7 @@ Json render_json(const std::string& scene_path, const std::string& output, const
        {{"backend", group.devices().front().backend->name},
         {"description", described(group.devices())},
         {"reason", group.devices().front().reason},
+        {"layout", kd::name_of(holding.layout)},
         {"strips", group.strips()}}},
       {"film", {{"width", scene.film.width}, {"height", scene.film.height}}},
       {"seconds",
@@ -114,9 +115,10 @@ void print_render(const std::string& output, const render::DeviceGroup& group, c
              mrays_per_second(stats), group.strips() > 1 ? fmt::format(", in {} strips", group.strips()) : "");
   fmt::print(
       "  load {:.3f} s, upload {:.3f} s, stages {:.4f} s, download {:.4f} s, write {:.3f} s; {:.1f} MiB of objects on "
-      "the device\n",
+      "the device{}\n",
       times.load, holding.upload_seconds, stats.render_seconds, stats.download_seconds, times.write,
-      static_cast<double>(holding.object_bytes) / (1 << 20));
+      static_cast<double>(holding.object_bytes) / (1 << 20),
+      holding.layout == TriangleLayout::compact ? ", compact" : "");
   if (!output.empty()) fmt::print("{}: {} x {}\n", output, scene.window.width, scene.window.height);
 }
 

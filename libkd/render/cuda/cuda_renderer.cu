@@ -84,6 +84,9 @@ class CudaRenderer final : public Renderer {
   Result<RenderStats> render(Strip strip, Frame& frame, const Progress& progress) override;
 
  private:
+  /// In the settings' layout, or the first one that there is memory for.
+  Result<void> upload_scene();
+  Result<void> upload_in(TriangleLayout layout);
   Result<RenderStats> run_stages(const FrameView& view, const Progress& progress);
   Result<void> download_strip(const FrameView& view, Strip strip, Frame& frame);
 
@@ -96,14 +99,25 @@ class CudaRenderer final : public Renderer {
   Holding holding_;
 };
 
+Result<void> CudaRenderer::upload_scene() {
+  const auto uploaded = upload_in(settings_.layout.value_or(TriangleLayout::expanded));
+  const bool short_of_memory = !uploaded && uploaded.error().error_class == ErrorClass::resource;
+  return short_of_memory && !settings_.layout ? upload_in(TriangleLayout::compact) : uploaded;
+}
+
+Result<void> CudaRenderer::upload_in(TriangleLayout layout) {
+  holding_.layout = layout;
+  if (auto created = device_scene_.create(scene_, layout, stream_); !created) return created;
+  return buffers_.create(scene_, settings_);
+}
+
 Result<void> CudaRenderer::open() {
   Timer timer;
   KD_CUDA_TRY(cudaSetDevice(index_), "choosing the device");
   KD_CUDA_TRY(stream_.create(), "starting");
-  if (auto created = device_scene_.create(scene_, stream_); !created) return created;
-  if (auto created = buffers_.create(scene_, settings_); !created) return created;
+  if (auto uploaded = upload_scene(); !uploaded) return uploaded;
   holding_.upload_seconds = timer.seconds();
-  holding_.object_bytes = object_bytes(scene_);
+  holding_.object_bytes = object_bytes(scene_, holding_.layout);
   holding_.scene_bytes = device_scene_.bytes() - holding_.object_bytes;
   holding_.strip_bytes = buffers_.bytes();
   size_t free = 0, total = 0;
@@ -177,6 +191,7 @@ Result<void> CudaRenderer::download_strip(const FrameView& view, Strip strip, Fr
 Result<RenderStats> CudaRenderer::render(Strip strip, Frame& frame, const Progress& progress) {
   KD_CUDA_TRY(cudaSetDevice(index_), "choosing the device");
   FrameView view = strip_view(scene_, settings_, strip);
+  view.scene.layout = holding_.layout;
   device_scene_.set(view.scene);
   buffers_.set(view);
   auto stats = run_stages(view, progress);

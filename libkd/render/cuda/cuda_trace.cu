@@ -1,18 +1,19 @@
 // Tracing rays against one object on the device, timed by its own events.
 #include "render/cuda/cuda_backend.h"
 #include "render/cuda/device_object.h"
+#include "render/expand.h"
 
 namespace kd::render {
 
 namespace {
 
-template <RayMode mode, class Test>
+template <RayMode mode, class Test, TriangleLayout layout>
 __global__ void __launch_bounds__(kBlock, kTraceBlocks)
     trace_kernel(TraceView view, const RayRecord* rays, uint32_t count, HitRecord* hits) {
   const uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
   if (i >= count) return;
   NoCounter counter;
-  hits[i] = trace_ray<mode, Test>(view, load(rays + i), counter);
+  hits[i] = trace_ray<mode, Test, layout>(view, load(rays + i), counter);
 }
 
 }  // namespace
@@ -34,7 +35,7 @@ Result<TraceOutcome> cuda_trace(const nkd::ObjectFile& object, const TraceJob& j
   HitRecord* hits = nullptr;
   const auto lay_out = [&] {
     memory.section("object");
-    pieces = object_pieces(memory, geometry);
+    pieces = object_pieces(memory, geometry, job.layout);
     source_primitives = memory.piece<uint32_t>(sources->size());
     memory.section("rays and hits");
     rays = memory.piece<RayRecord>(job.rays.size());
@@ -49,13 +50,14 @@ Result<TraceOutcome> cuda_trace(const nkd::ObjectFile& object, const TraceJob& j
   KD_CUDA_TRY(upload(source_primitives, *sources, stream), "uploading the object");
   KD_CUDA_TRY(upload(rays, job.rays, stream), "uploading the rays");
 
-  const TraceView view{
-      {pieces.nodes, pieces.references, pieces.triangles, lattice.bits}, invert(lattice.frame()), source_primitives};
+  const TraceView view{pieces.view(lattice.bits), invert(lattice.frame()), source_primitives};
   const auto count = static_cast<uint32_t>(job.rays.size());
   const auto launch = [&] {
     if (count == 0) return;
     with_kernel(job, [&]<RayMode mode, class Test>() {
-      trace_kernel<mode, Test><<<blocks_for(count), kBlock, 0, stream>>>(view, rays, count, hits);
+      with_layout(job.layout, [&]<TriangleLayout layout>() {
+        trace_kernel<mode, Test, layout><<<blocks_for(count), kBlock, 0, stream>>>(view, rays, count, hits);
+      });
     });
   };
   TraceOutcome out;
@@ -72,8 +74,7 @@ Result<TraceOutcome> cuda_trace(const nkd::ObjectFile& object, const TraceJob& j
   out.hits.resize(count);
   KD_CUDA_TRY(download(out.hits.data(), hits, count, stream), "copying the hits back");
   KD_CUDA_TRY(cudaStreamSynchronize(stream), "copying the hits back");
-  out.device_bytes = geometry.nodes.size_bytes() + geometry.references.size_bytes() +
-                     geometry.triangle_count() * sizeof(TriangleVertices);
+  out.device_bytes = traversal_bytes(geometry, job.layout);
   return out;
 }
 

@@ -11,13 +11,29 @@ __global__ void expand_kernel(PackedTriangles packed, uint32_t count, TriangleVe
   if (i < count) packed.expand(i, triangles[i]);
 }
 
+__global__ void unpack_corners_kernel(PackedTriangles packed, uint32_t count, uint32_t* corners) {
+  const uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
+  if (i < count) packed.unpack_corners(i, corners);
+}
+
+__global__ void compact_vertices_kernel(PackedTriangles packed, uint32_t count, VertexWord* vertices) {
+  const uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
+  if (i < count) packed.compact_vertex(i, vertices);
+}
+
 }  // namespace
 
-DeviceObject object_pieces(DeviceMemory& memory, const nkd::Geometry& geometry) {
-  DeviceObject object;
+DeviceObject object_pieces(DeviceMemory& memory, const nkd::Geometry& geometry, TriangleLayout layout) {
+  DeviceObject object{};
   object.nodes = memory.piece<Node>(geometry.nodes.size());
   object.references = memory.piece<uint32_t>(geometry.references.size());
-  object.triangles = memory.piece<TriangleVertices>(geometry.triangle_count());
+  if (layout == TriangleLayout::expanded) {
+    object.triangles = memory.piece<TriangleVertices>(geometry.triangle_count());
+  } else {
+    object.corners = memory.piece<uint32_t>(3 * geometry.triangle_count());
+    object.vertices = memory.piece<VertexWord>(geometry.vertex_words());
+    object.narrow = geometry.packed().narrow();
+  }
   return object;
 }
 
@@ -46,10 +62,16 @@ cudaError_t fill_object(const DeviceObject& object, const Staging& staging, cons
   if (status == cudaSuccess) status = upload(staging.vertices(), geometry.vertices, stream);
   if (status == cudaSuccess) status = upload(staging.corners(), geometry.triangles, stream);
   if (status != cudaSuccess) return status;
-  const auto count = static_cast<uint32_t>(geometry.triangle_count());
+  const auto triangles = static_cast<uint32_t>(geometry.triangle_count());
+  const auto vertices = static_cast<uint32_t>(geometry.vertex_count());
   const PackedTriangles packed{
       {staging.corners(), geometry.corner_bits()}, {staging.vertices(), geometry.vertex_bits()}, geometry.form};
-  expand_kernel<<<blocks_for(count), kBlock, 0, stream>>>(packed, count, object.triangles);
+  if (object.triangles) {
+    expand_kernel<<<blocks_for(triangles), kBlock, 0, stream>>>(packed, triangles, object.triangles);
+  } else {
+    unpack_corners_kernel<<<blocks_for(triangles), kBlock, 0, stream>>>(packed, triangles, object.corners);
+    compact_vertices_kernel<<<blocks_for(vertices), kBlock, 0, stream>>>(packed, vertices, object.vertices);
+  }
   return cudaGetLastError();
 }
 

@@ -1,4 +1,4 @@
-// An object on a device: its sections as they lie on disk, its triangles expanded.
+// An object on a device: its nodes and references as they lie on disk, its triangles in a layout.
 #pragma once
 
 #include "core/object_view.h"
@@ -8,16 +8,21 @@
 
 namespace kd::render {
 
-/// What traversal reads of an object.
+/// What traversal reads of an object: of triangles, those of its layout.
 struct DeviceObject {
   Node* nodes;
   uint32_t* references;
   TriangleVertices* triangles;
+  uint32_t* corners;
+  VertexWord* vertices;
+  bool narrow;
+
+  ObjectView view(int bits) const { return {nodes, references, triangles, bits, {corners, vertices, narrow}}; }
 };
 
-DeviceObject object_pieces(DeviceMemory& memory, const nkd::Geometry& geometry);
+DeviceObject object_pieces(DeviceMemory& memory, const nkd::Geometry& geometry, TriangleLayout layout);
 
-/// Where the packed vertices and corners of one object after the other wait for their expansion.
+/// Where the packed vertices and corners of one object after the other wait for what they become.
 class Staging {
  public:
   /// Room for this object's too; call before `allocate`.

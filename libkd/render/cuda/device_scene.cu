@@ -22,7 +22,7 @@ DeviceScene::~DeviceScene() {
   if (pinned_) cudaHostUnregister(const_cast<void*>(pinned_));
 }
 
-void DeviceScene::lay_out(const LoadedScene& scene) {
+void DeviceScene::lay_out(const LoadedScene& scene, TriangleLayout layout) {
   memory_.section("objects");
   objects_.assign(scene.objects.size(), {});
   object_views_.assign(scene.objects.size(), {});
@@ -30,14 +30,12 @@ void DeviceScene::lay_out(const LoadedScene& scene) {
     if (!scene.objects[i].file) continue;
     const nkd::ObjectFile& file = *scene.objects[i].file;
     const nkd::Attributes& a = scene.objects[i].attributes;
-    objects_[i] = object_pieces(memory_, file.geometry());
-    object_views_[i] = {{objects_[i].nodes, objects_[i].references, objects_[i].triangles, file.summary().lattice.bits},
-                        file.summary().lattice.step(),
-                        memory_.piece<uint32_t>(a.source_primitives.size()),
-                        memory_.piece<Vec3f>(a.normals.size()),
-                        memory_.piece<uint32_t>(a.normal_indices.size()),
-                        memory_.piece<Material>(a.materials.size()),
-                        memory_.piece<uint16_t>(a.material_ids.size())};
+    objects_[i] = object_pieces(memory_, file.geometry(), layout);
+    object_views_[i] = {
+        objects_[i].view(file.summary().lattice.bits),       file.summary().lattice.step(),
+        memory_.piece<uint32_t>(a.source_primitives.size()), memory_.piece<Vec3f>(a.normals.size()),
+        memory_.piece<uint32_t>(a.normal_indices.size()),    memory_.piece<Material>(a.materials.size()),
+        memory_.piece<uint16_t>(a.material_ids.size())};
   }
   view_.objects = memory_.piece<ShadedObjectView>(scene.objects.size());
   memory_.section("instances");
@@ -49,10 +47,11 @@ void DeviceScene::lay_out(const LoadedScene& scene) {
   view_.lights = memory_.piece<LightView>(scene.most_lights);
 }
 
-Result<void> DeviceScene::create(const LoadedScene& scene, cudaStream_t stream) {
-  lay_out(scene);
+Result<void> DeviceScene::create(const LoadedScene& scene, TriangleLayout layout, cudaStream_t stream) {
+  memory_.release();
+  lay_out(scene, layout);
   if (auto allocated = memory_.allocate(); !allocated) return allocated;
-  lay_out(scene);
+  lay_out(scene, layout);
   return fill(scene, stream);
 }
 

@@ -14,8 +14,8 @@ class DeviceScene {
   DeviceScene& operator=(const DeviceScene&) = delete;
   ~DeviceScene();
 
-  /// Uploads, and waits until all is there.
-  Result<void> create(const LoadedScene& scene, cudaStream_t stream);
+  /// Uploads, and waits until all is there. What was there before is given back first.
+  Result<void> create(const LoadedScene& scene, TriangleLayout layout, cudaStream_t stream);
   /// The same of what has moved, and the lights as they are.
   Result<void> follow(const LoadedScene& scene, const Moved& moved, cudaStream_t stream);
   /// Sets what points to memory, and nothing else.
@@ -29,7 +29,7 @@ class DeviceScene {
   size_t bytes() const { return memory_.bytes(); }
 
  private:
-  void lay_out(const LoadedScene& scene);
+  void lay_out(const LoadedScene& scene, TriangleLayout layout);
   Result<void> fill(const LoadedScene& scene, cudaStream_t stream);
 
   DeviceMemory memory_;

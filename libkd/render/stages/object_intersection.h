@@ -18,7 +18,10 @@ struct Excluded {
 ///
 /// Calls visit(instance) for instances whose boxes the ray passes, nearer boxes first, while visit returns true. Boxes
 /// that begin beyond `t_limit`, which visit may lower, are left out.
+template <TriangleLayout layout = TriangleLayout::expanded>
 struct ThroughHierarchy {
+  static constexpr TriangleLayout kLayout = layout;
+
   template <class Visit>
   KD_HD static void for_each(const SceneView& scene, const Ray& ray, const double& t_limit, const Visit& visit) {
     if (scene.instance_count == 0) return;
@@ -46,7 +49,10 @@ struct ThroughHierarchy {
 };
 
 /// For scenes of one instance, which need no hierarchy; nor, on a GPU, the registers for one.
+template <TriangleLayout layout = TriangleLayout::expanded>
 struct OnlyInstance {
+  static constexpr TriangleLayout kLayout = layout;
+
   template <class Visit>
   KD_HD KD_INLINE static void for_each(const SceneView&, const Ray&, const double&, const Visit& visit) {
     visit(0);
@@ -80,9 +86,10 @@ KD_HD inline SurfaceHit closest_hit(const SceneView& scene, const Ray& ray, Coun
     const float s_limit = best.instance == kNone ? lattice_ray.s_max : detail::limit_in_lattice(lattice_ray, t_limit);
     if (s_limit < 0) return true;
     const ObjectView& object = scene.objects[scene.instances[index].object].tree;
-    const uint32_t triangle = traverse<RayMode::closest>(object, lattice_ray, s_limit, kNoTriangle, counter);
+    const uint32_t triangle =
+        traverse<RayMode::closest, ExactTest, Instances::kLayout>(object, lattice_ray, s_limit, kNoTriangle, counter);
     if (triangle == kNoTriangle) return true;
-    const TriangleHit hit = ExactTest(lattice_ray).locate(load(object.triangles + triangle));
+    const TriangleHit hit = ExactTest(lattice_ray).locate(object.triangle<Instances::kLayout>(triangle));
     reduce(best, {lattice_ray.t_at(hit.s), hit.u, hit.v, index, triangle});
     t_limit = best.t;
     return true;
@@ -90,14 +97,14 @@ KD_HD inline SurfaceHit closest_hit(const SceneView& scene, const Ray& ray, Coun
   return best;
 }
 
-template <class Instances = ThroughHierarchy>
+template <class Instances = ThroughHierarchy<>>
 KD_HD KD_INLINE SurfaceHit closest_hit(const SceneView& scene, const Ray& ray) {
   NoCounter counter;
   return closest_hit<Instances>(scene, ray, counter);
 }
 
 /// Whether the ray meets anything but `excluded`.
-template <class Instances = ThroughHierarchy>
+template <class Instances = ThroughHierarchy<>>
 KD_HD inline bool any_hit(const SceneView& scene, const Ray& ray, Excluded excluded) {
   bool met = false;
   Instances::for_each(scene, ray, ray.t_max, [&](uint32_t index) {
@@ -106,7 +113,8 @@ KD_HD inline bool any_hit(const SceneView& scene, const Ray& ray, Excluded exclu
     const ObjectView& object = scene.objects[scene.instances[index].object].tree;
     const uint32_t own = excluded.instance == index ? excluded.triangle : kNoTriangle;
     NoCounter counter;
-    met = traverse<RayMode::any>(object, lattice_ray, lattice_ray.s_max, own, counter) != kNoTriangle;
+    met = traverse<RayMode::any, ExactTest, Instances::kLayout>(object, lattice_ray, lattice_ray.s_max, own, counter) !=
+          kNoTriangle;
     return !met;
   });
   return met;

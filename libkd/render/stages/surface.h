@@ -39,7 +39,7 @@ KD_HD KD_INLINE Vec3d interpolated_normal(const ShadedObjectView& object, const 
 KD_HD inline Surface surface_at(const SceneView& scene, const SurfaceHit& hit, Vec3d direction) {
   const InstanceView& instance = scene.instances[hit.instance];
   const ShadedObjectView& object = scene.objects[instance.object];
-  const TriangleVertices& triangle = object.tree.triangles[hit.triangle];
+  const TriangleVertices triangle = object.tree.triangle(hit.triangle);
   const Vec3d a = vec_cast<double>(triangle.a);
   const Vec3d ab = vec_cast<double>(triangle.b) - a, ac = vec_cast<double>(triangle.c) - a;
   const Vec3d p_lattice = a + ab * hit.u + ac * hit.v;  // on the plane, whatever rounding did to u and v
