@@ -198,7 +198,8 @@ Result<void> measure(const Options& o) {
   if (!scene) return scene.error();
   render::RenderSettings settings;
   settings.gamma_on_film = o.gamma;
-  auto loaded = render::load_scene(*scene, settings);
+  auto loaded =
+      render::load_scene(*scene, settings, render::kStill, render::Extent::all);  // the paper leaves nothing out
   if (!loaded) return loaded.error();
   if (loaded->instances.empty()) return Error{ErrorClass::scene, o.scene, "it places no object: nothing to measure"};
   if (o.json != "-") {

@@ -15,8 +15,7 @@ namespace {
 
 std::vector<Lattice> lattices_of(const render::LoadedScene& loaded) {
   std::vector<Lattice> lattices;
-  for (const render::LoadedObject& object : loaded.objects)
-    lattices.push_back(object.file ? object.file->summary().lattice : Lattice{});
+  for (const auto& summary : loaded.summaries) lattices.push_back(summary ? summary->lattice : Lattice{});
   return lattices;
 }
 
@@ -39,7 +38,7 @@ Result<render::LoadedScene> load_once(const std::string& file, Loads& loads) {
   const auto instances = scene::place_instances(*scene, lattices);
   loads.place.push_back(timer.lap());
   if (!instances) return instances.error();
-  const auto hierarchy = scene::build_hierarchy(*instances);
+  const auto hierarchy = scene::build_hierarchy(loaded->instances);  // of those that culling left
   loads.hierarchy.push_back(timer.lap());
   return loaded;
 }
@@ -81,8 +80,8 @@ Result<SceneCost> measure_scene(const scene::Scene& scene, const std::string& fi
   if (!loaded) return loaded.error();
 
   SceneCost cost;
-  cost.instances = loaded->instances.size();
-  cost.objects_opened = static_cast<uint32_t>(loaded->objects.size()) - loaded->skipped.objects;
+  cost.instances = loaded->instances.size() + loaded->skipped.instances;
+  cost.objects_opened = static_cast<uint32_t>(loaded->objects.size());
   cost.seconds.parse = median(std::move(loads.parse));
   cost.seconds.load = median(std::move(loads.load));
   cost.seconds.place = median(std::move(loads.place));

@@ -14,7 +14,7 @@ namespace kd::bench::scale {
 /// Medians of the repeats, seconds.
 struct SceneSeconds {
   double parse = 0;      // the scene file
-  double load = 0;       // objects opened and validated, instances placed, hierarchy built
+  double load = 0;       // objects opened, instances placed, what rays can meet validated and under a hierarchy
   double place = 0;      // of that, the instances
   double hierarchy = 0;  // and the hierarchy over them
   double upload = 0;     // objects and instances to the device

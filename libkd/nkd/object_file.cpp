@@ -62,6 +62,13 @@ Error unsound(const std::string& path, const Finding& finding) { return {ErrorCl
 }  // namespace
 
 Result<ObjectFile> ObjectFile::open(const std::string& path) {
+  auto file = open_header(path);
+  if (!file) return file;
+  if (auto sound = file->check_geometry(); !sound) return sound.error();
+  return file;
+}
+
+Result<ObjectFile> ObjectFile::open_header(const std::string& path) {
   auto file = MappedFile::open(path);
   if (!file) return file.error();
   ObjectFile o;
@@ -74,10 +81,14 @@ Result<ObjectFile> ObjectFile::open(const std::string& path) {
   if (auto f = check_summary(o.summary_)) return unsound(path, *f);
   if (auto f = check_vertex_form(o.geometry_)) return unsound(path, *f);
   if (auto f = check_header_checksum(*o.object_)) return unsound(path, *f);
-  if (auto f = check_geometry_checksums(*o.object_, o.geometry_)) return unsound(path, *f);
-  if (auto f = check_nodes(o.geometry_)) return unsound(path, *f);
-  if (auto f = check_indices(o.geometry_)) return unsound(path, *f);
   return o;
+}
+
+Result<void> ObjectFile::check_geometry() const {
+  if (auto f = check_geometry_checksums(*object_, geometry_)) return unsound(path_, *f);
+  if (auto f = check_nodes(geometry_)) return unsound(path_, *f);
+  if (auto f = check_indices(geometry_)) return unsound(path_, *f);
+  return {};
 }
 
 bool ObjectFile::has_normals() const { return object_->normal_indices() && object_->normal_indices()->size() > 0; }

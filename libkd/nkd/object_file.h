@@ -21,6 +21,10 @@ class ObjectFile {
   /// Maps and validates. ErrorClass::missing if the path cannot be read, ErrorClass::object with the code if
   /// the file is unsound.
   static Result<ObjectFile> open(const std::string& path);
+  /// The same of the header alone: summary() and size() are known, no section is read. What geometry() leads to is not
+  /// to be followed before check_geometry() has found it sound.
+  static Result<ObjectFile> open_header(const std::string& path);
+  Result<void> check_geometry() const;
 
   const std::string& path() const { return path_; }
   uint64_t size() const { return file_.bytes().size(); }

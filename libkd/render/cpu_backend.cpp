@@ -47,7 +47,7 @@ class CpuRenderer final : public Renderer {
   uint32_t max_rows() const override { return scene_.window.height; }
   const Holding& holding() const override { return holding_; }
   Result<void> follow(const Moved& moved) override {
-    for (uint32_t i : moved.instances) instances_[i] = instance_view(scene_.instances[i]);
+    for (uint32_t i : moved.instances) instances_[i] = instance_view(scene_, scene_.instances[i]);
     return {};
   }
   Result<RenderStats> render(Strip strip, Frame& frame, const Progress& progress) override;
@@ -77,6 +77,8 @@ Result<RenderStats> CpuRenderer::render(Strip strip, Frame& frame, const Progres
   view.scene.objects = objects_.views.data();
   view.scene.overrides = scene_.overrides.data();
   view.scene.lights = scene_.lights.data();
+  view.scene.instance_numbers = scene_.instance_numbers.empty() ? nullptr : scene_.instance_numbers.data();
+  view.scene.object_numbers = scene_.object_numbers.data();
   view.hits = hits_.data();
   view.colour = reinterpret_cast<Pixel*>(frame.film.colour.data()) + first;
   view.preview = frame.preview.empty() ? nullptr : frame.preview.data() + 3 * first;

@@ -61,8 +61,7 @@ ObjectView HostObject::view() const {
 HostObjects::HostObjects(const LoadedScene& scene, TriangleLayout layout) : views(scene.objects.size()) {
   objects.reserve(scene.objects.size());
   for (size_t i = 0; i < scene.objects.size(); ++i) {
-    if (!scene.objects[i].file) continue;
-    const nkd::ObjectFile& file = *scene.objects[i].file;
+    const nkd::ObjectFile& file = scene.objects[i].file;
     const nkd::Attributes& a = scene.objects[i].attributes;
     views[i] = {objects.emplace_back(file.geometry(), layout).view(),
                 file.summary().lattice.step(),

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include <fmt/format.h>
+
 #include "scene/camera_axes.h"
 #include "scene/nesting.h"
 
@@ -36,7 +38,7 @@ Needs needs_of(const scene::Scene& scene, const RenderSettings& settings) {
 }
 
 Result<void> load_attributes(LoadedObject& object, const Needs& needs, Skipped& skipped) {
-  const nkd::ObjectFile& file = *object.file;
+  const nkd::ObjectFile& file = object.file;
   if (file.has_materials()) {
     if (needs.materials) {
       auto materials = file.materials();
@@ -133,67 +135,116 @@ Result<void> look_at_frame(LoadedScene& loaded, const scene::Scene& scene, doubl
   return {};
 }
 
-}  // namespace
+/// Of the objects that parts place, the others stay empty.
+struct Headers {
+  std::vector<std::optional<nkd::ObjectFile>> files;
+  std::vector<Lattice> lattices;
+};
 
-Result<LoadedScene> load_scene(const scene::Scene& scene, const RenderSettings& settings, double frame) {
-  LoadedScene loaded;
-  const Needs needs = needs_of(scene, settings);
-  std::vector<Lattice> lattices(scene.objects.size());
-  loaded.objects.resize(scene.objects.size());
-  const std::vector<scene::ObjectUse> uses = scene::object_uses(scene);
-  for (uint32_t i = 0; i < scene.objects.size(); ++i) {
-    if (!uses[i].placed) {
-      ++loaded.skipped.objects;
-      continue;
-    }
-    auto file = nkd::ObjectFile::open(scene.objects[i].file);
+Result<Headers> open_headers(const scene::Scene& scene, std::span<const scene::ObjectUse> uses) {
+  Headers headers{std::vector<std::optional<nkd::ObjectFile>>(uses.size()), std::vector<Lattice>(uses.size())};
+  for (size_t i = 0; i < uses.size(); ++i) {
+    if (!uses[i].placed) continue;
+    auto file = nkd::ObjectFile::open_header(scene.objects[i].file);
     if (!file) return file.error();
     if (file->geometry().form != VertexForm::lattice) {
       return Error{ErrorClass::object, scene.objects[i].file,
                    "its vertices are float32, for benchmarks only, and rendering is exact on the lattice: compile it "
                    "without --vertices float32"};
     }
-    lattices[i] = file->summary().lattice;
-    loaded.objects[i].file = std::move(*file);
-    Needs own = needs;
-    own.materials = needs.materials && uses[i].own_materials;
-    if (auto attributes = load_attributes(loaded.objects[i], own, loaded.skipped); !attributes)
-      return attributes.error();
+    headers.lattices[i] = file->summary().lattice;
+    headers.files[i] = std::move(*file);
   }
+  return headers;
+}
 
-  auto placed = scene::PlacedScene::place(scene, lattices, frame);
+Result<void> place(LoadedScene& loaded, const scene::Scene& scene, std::span<const Lattice> lattices,
+                   double first_frame) {
+  const image::Window& w = loaded.window;
+  const scene::FilmPart part{w.column, w.row, w.width, w.height};
+  auto placed = loaded.frames.empty() ? scene::PlacedScene::place(scene, lattices, first_frame)
+                                      : scene::PlacedScene::place_met(scene, lattices, part, loaded.frames);
   if (!placed) return placed.error();
   loaded.placed = std::move(*placed);
   loaded.instances = loaded.placed->instances();
+  loaded.instance_numbers = loaded.placed->numbers();
   loaded.hierarchy = loaded.placed->hierarchy();
-  loaded.overrides = scene::override_materials(scene);
+  loaded.skipped.instances = loaded.placed->left_out();
+  return {};
+}
+
+/// Of the objects whose headers are open, loads those that the instances need, and keeps what the headers say of all.
+Result<void> load_objects(LoadedScene& loaded, Headers headers, std::span<const scene::ObjectUse> uses, Needs needs) {
+  std::vector<bool> needed(uses.size(), loaded.frames.empty());
+  for (const scene::Instance& instance : loaded.instances) needed[instance.object] = true;
+  loaded.object_slots.assign(uses.size(), kNone);
+  loaded.summaries.resize(uses.size());
+  for (uint32_t i = 0; i < uses.size(); ++i) {
+    if (!uses[i].placed) {
+      ++loaded.skipped.objects;
+      continue;
+    }
+    loaded.summaries[i] = headers.files[i]->summary();
+    if (!needed[i]) {
+      ++loaded.skipped.unmet_objects;
+      continue;
+    }
+    if (auto sound = headers.files[i]->check_geometry(); !sound) return sound;
+    loaded.object_slots[i] = static_cast<uint32_t>(loaded.objects.size());
+    loaded.object_numbers.push_back(i);
+    loaded.objects.push_back({std::move(*headers.files[i]), {}});
+    Needs own = needs;
+    own.materials = needs.materials && uses[i].own_materials;
+    if (auto attributes = load_attributes(loaded.objects.back(), own, loaded.skipped); !attributes) return attributes;
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<LoadedScene> load_scene(const scene::Scene& scene, const RenderSettings& settings,
+                               std::span<const double> frames, Extent extent) {
+  LoadedScene loaded;
   loaded.film = scene.film;
   loaded.window = settings.crop.value_or(image::Window{0, 0, scene.film.width, scene.film.height});
+  if (extent == Extent::met) loaded.frames.assign(frames.begin(), frames.end());
+  const std::vector<scene::ObjectUse> uses = scene::object_uses(scene);
+  auto headers = open_headers(scene, uses);
+  if (!headers) return headers.error();
+  if (auto placed = place(loaded, scene, headers->lattices, frames.front()); !placed) return placed.error();
+  auto objects = load_objects(loaded, std::move(*headers), uses, needs_of(scene, settings));
+  if (!objects) return objects.error();
+
+  loaded.overrides = scene::override_materials(scene);
   loaded.most_lights = static_cast<uint32_t>(scene.lights.size());
   loaded.moves = scene::key_range(scene).has_value();
   loaded.ambient = scene.ambient;
   loaded.background = scene.background;
   loaded.skipped.aov_buffers = static_cast<uint32_t>(image::kAovRows.size() - settings.aovs.size());
-  if (auto looked = look_at_frame(loaded, scene, frame); !looked) return looked.error();
+  if (auto looked = look_at_frame(loaded, scene, loaded.placed->frame()); !looked) return looked.error();
   return loaded;
 }
 
 Result<Moved> move_to(LoadedScene& loaded, const scene::Scene& scene, double frame) {
+  const std::vector<double>& frames = loaded.frames;
+  if (!frames.empty() && std::find(frames.begin(), frames.end(), frame) == frames.end()) {
+    return Error{ErrorClass::usage, scene.path, fmt::format("it was not loaded for frame {}", frame)};
+  }
   const auto moved = loaded.placed->move_to(frame);
   if (!moved) return moved.error();
   if (auto looked = look_at_frame(loaded, scene, frame); !looked) return looked.error();
   return Moved{*moved};
 }
 
-InstanceView instance_view(const scene::Instance& instance) {
+InstanceView instance_view(const LoadedScene& scene, const scene::Instance& instance) {
   static_assert(kNone == scene::kOwnMaterials);
-  return {instance.scene_to_lattice, instance.lattice_to_scene, instance.object, instance.material};
+  return {instance.scene_to_lattice, instance.lattice_to_scene, scene.object_slots[instance.object], instance.material};
 }
 
 std::vector<InstanceView> instance_views(const LoadedScene& scene) {
   std::vector<InstanceView> views;
   views.reserve(scene.instances.size());
-  for (const scene::Instance& instance : scene.instances) views.push_back(instance_view(instance));
+  for (const scene::Instance& instance : scene.instances) views.push_back(instance_view(scene, instance));
   return views;
 }
 

@@ -30,24 +30,31 @@ struct RenderSettings {
 
 /// One object's sections that this render reads; the others are empty and stay on disk.
 struct LoadedObject {
-  std::optional<nkd::ObjectFile> file;  // none: no part places the object, and it was not opened
+  nkd::ObjectFile file;
   nkd::Attributes attributes;
 };
 
 /// What loading found no need for.
 struct Skipped {
-  uint32_t objects = 0;   // that no part places: not opened
-  uint32_t sections = 0;  // present in opened objects, but read by no stage
+  uint32_t objects = 0;        // that no part places: not opened
+  uint32_t unmet_objects = 0;  // that are placed, but have no instance that a ray can meet: only their headers are read
+  uint32_t instances = 0;      // that no ray can meet
+  uint32_t sections = 0;       // present in loaded objects, but read by no stage
   uint32_t black_lights = 0;
   uint32_t lights_out_of_reach = 0;  // of every instance
   uint32_t aov_buffers = 0;          // AOVs that nobody asked for
 };
 
 struct LoadedScene {
-  std::vector<LoadedObject> objects;  // one a scene object
+  std::vector<LoadedObject> objects;                   // that rays can meet, in the scene's order
+  std::vector<uint32_t> object_numbers;                // of the scene: which those are
+  std::vector<uint32_t> object_slots;                  // and back: an index into `objects`, or kNone
+  std::vector<std::optional<nkd::Summary>> summaries;  // of the scene's objects; none: no part places it
   std::optional<scene::PlacedScene> placed;
-  std::span<const scene::Instance> instances;  // of `placed`, and so is the hierarchy
+  std::span<const scene::Instance> instances;  // of `placed`, and so are the hierarchy and the numbers
+  std::span<const uint32_t> instance_numbers;  // of the scene: which those are; empty: all
   std::span<const HierarchyNode> hierarchy;
+  std::vector<double> frames;     // that it is loaded for; empty: any
   std::vector<LightView> lights;  // those that can light something
   std::vector<Material> overrides;
   uint32_t most_lights = 0;  // at any frame
@@ -58,13 +65,29 @@ struct LoadedScene {
   Vec3f ambient;
   Vec3f background;
   Skipped skipped;
+
+  /// Whether the scene places no more than one, which needs no hierarchy. Not whether only one is loaded: the
+  /// hierarchy's boxes are part of what a ray meets, and what is left out must change nothing.
+  bool is_one_instance() const { return instances.size() == 1 && skipped.instances == 0; }
 };
 
-/// Opens the objects that parts place, validates what will be read, and places the instances as they are at a frame of
-/// the film; `scene` must outlive what is loaded and stay as it is. Errors as ObjectFile::open, scene::place_instances
-/// and scene::camera_at; ErrorClass::object too for an object whose vertices are float32.
+/// A still picture.
+inline constexpr double kStill[] = {scene::kDefaultFrame};
+
+enum class Extent {
+  met,  // what rays can meet in the frames asked for
+  all   // that is placed, for any frame
+};
+
+/// Loads what `frames` of the film need, and stands at the first of them: opens the objects that rays can meet in some
+/// of them, validates what will be read, and places their instances (scene/culling.h). Of other objects that parts
+/// place the headers are read and validated, which say where they end.
+///
+/// `scene` must outlive what is loaded and stay as it is. Errors as ObjectFile::open, scene::place_instances,
+/// scene::camera_at and scene::lights_at, at any of the frames; ErrorClass::object too for an object whose vertices are
+/// float32.
 Result<LoadedScene> load_scene(const scene::Scene& scene, const RenderSettings& settings,
-                               double frame = scene::kDefaultFrame);
+                               std::span<const double> frames = kStill, Extent extent = Extent::met);
 
 /// What has moved from one frame to another: these instances, and of the hierarchy whatever is above them, or all of
 /// it.
@@ -72,12 +95,13 @@ struct Moved {
   std::span<const uint32_t> instances;  // ascending; valid until the next move
 };
 
-/// Moves a loaded scene to another frame: camera, lights, and the instances that keys move. Sections stay as they are.
-/// Errors as load_scene; the scene then belongs to no frame.
+/// Moves a loaded scene to another of its frames: camera, lights, and the instances that keys move. Sections stay as
+/// they are. Errors as load_scene, and ErrorClass::usage for a frame that it is not loaded for; the scene then belongs
+/// to no frame.
 Result<Moved> move_to(LoadedScene& loaded, const scene::Scene& scene, double frame);
 
 /// What a stage sees of an instance.
-InstanceView instance_view(const scene::Instance& instance);
+InstanceView instance_view(const LoadedScene& scene, const scene::Instance& instance);
 std::vector<InstanceView> instance_views(const LoadedScene& scene);
 
 }  // namespace kd::render

@@ -26,6 +26,7 @@ struct PipelinePlan {
   std::span<const AovTarget> aovs;
   bool gamma_on_preview = false;
   bool gamma_on_film = false;
+  bool one_instance = false;  // is all that the scene places
 
   /// AOVs are of the pixel's centre, which is none of several samples.
   bool centres_apart() const { return samples > 1 && !aovs.empty(); }
@@ -79,7 +80,7 @@ void run_pipeline(const FrameView& frame, const PipelinePlan& plan, Launch&& lau
     if (!plan.centres_apart()) write_aovs();
   };
   with_layout(frame.scene.layout, [&]<TriangleLayout layout>() {
-    if (frame.scene.instance_count == 1) {
+    if (plan.one_instance) {
       traced_stages(OnlyInstance<layout>{});
     } else {
       traced_stages(ThroughHierarchy<layout>{});

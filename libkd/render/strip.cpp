@@ -19,7 +19,12 @@ FrameView strip_view(const LoadedScene& scene, const RenderSettings& settings, S
 }
 
 PipelinePlan pipeline_plan(const LoadedScene& scene, const RenderSettings& settings, std::span<const AovTarget> aovs) {
-  return {static_cast<uint32_t>(scene.lights.size()), settings.samples, aovs, settings.preview, settings.gamma_on_film};
+  return {static_cast<uint32_t>(scene.lights.size()),
+          settings.samples,
+          aovs,
+          settings.preview,
+          settings.gamma_on_film,
+          scene.is_one_instance()};
 }
 
 size_t bytes_a_pixel(const RenderSettings& settings) {
@@ -31,9 +36,8 @@ size_t bytes_a_pixel(const RenderSettings& settings) {
 uint64_t object_bytes(const LoadedScene& scene, TriangleLayout layout) {
   uint64_t bytes = 0;
   for (const LoadedObject& object : scene.objects) {
-    if (!object.file) continue;
     const nkd::Attributes& a = object.attributes;
-    bytes += traversal_bytes(object.file->geometry(), layout) + a.source_primitives.size_bytes() +
+    bytes += traversal_bytes(object.file.geometry(), layout) + a.source_primitives.size_bytes() +
              a.normals.size_bytes() + a.normal_indices.size_bytes() + a.materials.size_bytes() +
              a.material_ids.size_bytes();
   }

@@ -48,6 +48,8 @@ struct SceneView {
   const ShadedObjectView* objects = nullptr;
   const Material* overrides = nullptr;
   const LightView* lights = nullptr;
+  const uint32_t* instance_numbers = nullptr;  // in the scene; null: the same as here
+  const uint32_t* object_numbers = nullptr;    // in the scene
   uint32_t instance_count = 0;
   TriangleLayout layout = TriangleLayout::expanded;  // of all objects
   Vec3f ambient;

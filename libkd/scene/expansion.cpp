@@ -142,6 +142,8 @@ class Placer {
   }
 
   void place_instance(const Part& part, const Level& level, uint32_t index) {
+    if (!expansion_.slots_.empty()) index = expansion_.slots_[index];
+    if (index == Expansion::kForgotten) return;
     if (is_singular(level.to_scene)) return errors_.add(index, singular_error(level));
     const Expansion::ObjectFrames& object = expansion_.objects_[part.object];
     const bool box = std::holds_alternative<BoxPlacement>(part.placement);
@@ -249,6 +251,19 @@ void Expansion::list_moving(Range range) {
     moving_.back().count += range.count;
   } else {
     moving_.push_back(range);
+  }
+}
+
+void Expansion::keep(std::span<const uint8_t> kept) {
+  slots_.assign(count_, kForgotten);
+  count_ = 0;
+  for (size_t i = 0; i < slots_.size(); ++i) {
+    if (kept[i]) slots_[i] = count_++;
+  }
+  for (const Range& range : std::exchange(moving_, {})) {
+    for (uint32_t i = range.first; i < range.first + range.count; ++i) {
+      if (kept[i]) list_moving({slots_[i], 1});
+    }
   }
 }
 

@@ -22,6 +22,10 @@ class Expansion {
     uint32_t first = 0;
     uint32_t count = 0;
   };
+  /// Keeps those instances of which `kept` is not 0, under numbers from 0 in the same order, and forgets the others.
+  /// `kept` has count() elements.
+  void keep(std::span<const uint8_t> kept);
+
   /// The instances that keys move, ascending and apart.
   std::span<const Range> moving() const { return moving_; }
 
@@ -56,6 +60,8 @@ class Expansion {
     uint32_t first = 0;  // instance
   };
 
+  static constexpr uint32_t kForgotten = 0xffffffffu;
+
   explicit Expansion(const Scene& scene) : scene_(&scene), plans_(scene.characters.size()) {}
   void find_moving(uint32_t character);
   void list_moving(uint32_t character, uint32_t first);
@@ -67,6 +73,7 @@ class Expansion {
   std::vector<Root> roots_;         // the shown characters
   std::vector<Root> moving_roots_;  // those of them that move
   std::vector<Range> moving_;
+  std::vector<uint32_t> slots_;  // the numbers that instances have now, or kForgotten; empty: all are as they were
   uint32_t count_ = 0;
 };
 

@@ -1,5 +1,6 @@
 #include "scene/placed_scene.h"
 
+#include <algorithm>
 #include <new>
 
 namespace kd::scene {
@@ -22,18 +23,73 @@ Result<PlacedScene> PlacedScene::place(const Scene& scene, std::span<const Latti
     auto expansion = Expansion::of(scene, lattices);
     if (!expansion) return expansion.error();
     PlacedScene placed(std::move(*expansion), frame);
-    const auto done = placed.expansion_.place_all(frame, {placed.instances_.data(), placed.instances_.size()});
+    const auto done = placed.expansion_.place_all(frame, placed.places());
     if (!done) return done.error();
-    placed.build();
-    if (placed.expansion_.moving().empty()) return placed;
-    placed.is_moved_.assign(placed.instances_.size(), 0);
-    size_t movable = 0;
-    for (const Expansion::Range& range : placed.expansion_.moving()) movable += range.count;
-    placed.moved_.reserve(movable);
+    placed.start();
     return placed;
   } catch (const std::bad_alloc&) {
     return out_of_memory(scene);
   }
+}
+
+Result<PlacedScene> PlacedScene::place_met(const Scene& scene, std::span<const Lattice> lattices, const FilmPart& part,
+                                           std::span<const double> frames) {
+  try {
+    auto expansion = Expansion::of(scene, lattices);
+    if (!expansion) return expansion.error();
+    PlacedScene placed(std::move(*expansion), frames.front());
+    // If nothing moves, all frames are alike.
+    const auto met = placed.find_met(lattices, part, key_range(scene) ? frames : frames.first(1));
+    if (!met) return met.error();
+    placed.keep(*met);
+    placed.start();
+    return placed;
+  } catch (const std::bad_alloc&) {
+    return out_of_memory(scene);
+  }
+}
+
+/// Which instances are met at some of the frames. Places all, and leaves them as they are at the first frame.
+Result<std::vector<uint8_t>> PlacedScene::find_met(std::span<const Lattice> lattices, const FilmPart& part,
+                                                   std::span<const double> frames) {
+  const Scene& scene = expansion_.scene();
+  std::vector<uint8_t> met(instances_.size(), 0), moved(instances_.size(), 0);
+  if (const auto done = expansion_.place_all(frames.back(), places()); !done) return done.error();
+  for (size_t i = frames.size(); i-- > 0;) {
+    if (const auto done = expansion_.place_moving(frames[i], places(), moved); !done) return done.error();
+    const auto camera = camera_at(scene, frames[i]);
+    if (!camera) return camera.error();
+    auto lights = lights_at(scene, frames[i]);
+    if (!lights) return lights.error();
+    mark_met({*camera, scene.film, part, std::move(*lights)}, lattices, instances_, met);
+  }
+  return met;
+}
+
+void PlacedScene::keep(std::span<const uint8_t> kept) {
+  const auto count = static_cast<size_t>(std::count(kept.begin(), kept.end(), 1));
+  left_out_ = static_cast<uint32_t>(kept.size() - count);
+  if (left_out_ == 0) return;
+  HugeArray<Instance> instances(count);
+  numbers_.reserve(count);
+  for (uint32_t i = 0; i < kept.size(); ++i) {
+    if (!kept[i]) continue;
+    instances[numbers_.size()] = instances_[i];
+    numbers_.push_back(i);
+  }
+  instances_ = std::move(instances);
+  expansion_.keep(kept);
+}
+
+/// The hierarchy, and room for what will move.
+void PlacedScene::start() {
+  nodes_ = HugeArray<HierarchyNode>(hierarchy_size(instances_.size()));
+  build();
+  if (expansion_.moving().empty()) return;
+  is_moved_.assign(instances_.size(), 0);
+  size_t movable = 0;
+  for (const Expansion::Range& range : expansion_.moving()) movable += range.count;
+  moved_.reserve(movable);
 }
 
 void PlacedScene::build() {
@@ -46,7 +102,7 @@ Result<std::span<const uint32_t>> PlacedScene::move_to(double frame) {
   try {
     rebuilt_ = false;
     frame_ = frame;
-    const auto done = expansion_.place_moving(frame, {instances_.data(), instances_.size()}, is_moved_);
+    const auto done = expansion_.place_moving(frame, places(), is_moved_);
     if (!done) return done.error();
     list_moved();
     refitter_.refit({nodes_.data(), nodes_.size()}, instances_, moved_);

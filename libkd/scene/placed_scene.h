@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "scene/culling.h"
 #include "scene/expansion.h"
 #include "scene/hierarchy.h"
 #include "scene/instances.h"
@@ -18,9 +19,19 @@ class PlacedScene {
   /// All instances at a frame; errors as place_instances.
   static Result<PlacedScene> place(const Scene& scene, std::span<const Lattice> lattices, double frame);
 
+  /// The same at the first of `frames`, but without the instances that no ray through `part` of the film can meet at
+  /// any of them (culling.h): it must not move to other frames. Errors as place_instances, camera_at and lights_at, at
+  /// any of the frames.
+  static Result<PlacedScene> place_met(const Scene& scene, std::span<const Lattice> lattices, const FilmPart& part,
+                                       std::span<const double> frames);
+
   double frame() const { return frame_; }
-  /// To the bit those of place_instances at the frame.
+  /// To the bit those of place_instances at the frame; of place_met, those that are there.
   std::span<const Instance> instances() const { return instances_; }
+  /// Which of place_instances those are, ascending; empty: all.
+  std::span<const uint32_t> numbers() const { return numbers_; }
+  /// How many instances are not there.
+  uint32_t left_out() const { return left_out_; }
   /// As build_hierarchy, but where motion has refitted it: then its boxes still hold what is below them, and what a ray
   /// hits is the same.
   std::span<const HierarchyNode> hierarchy() const { return nodes_; }
@@ -37,17 +48,20 @@ class PlacedScene {
 
  private:
   PlacedScene(Expansion expansion, double frame)
-      : expansion_(std::move(expansion)),
-        frame_(frame),
-        instances_(expansion_.count()),
-        nodes_(hierarchy_size(expansion_.count())),
-        refitter_({}) {}
+      : expansion_(std::move(expansion)), frame_(frame), instances_(expansion_.count()), refitter_({}) {}
+  Result<std::vector<uint8_t>> find_met(std::span<const Lattice> lattices, const FilmPart& part,
+                                        std::span<const double> frames);
+  std::span<Instance> places() { return {instances_.data(), instances_.size()}; }
+  void keep(std::span<const uint8_t> kept);
+  void start();
   void build();
   void list_moved();
 
   Expansion expansion_;
   double frame_;
   HugeArray<Instance> instances_;
+  std::vector<uint32_t> numbers_;
+  uint32_t left_out_ = 0;
   HugeArray<HierarchyNode> nodes_;
   Refitter refitter_;              // empty if nothing moves
   std::vector<uint8_t> is_moved_;  // of instances, since the last move that succeeded; empty if nothing moves

@@ -35,8 +35,10 @@ TEST_SUITE("kdbench scale") {
     CHECK(library[0]["objects_opened"] == 10);
 
     const auto& unseen_objects = series_of(report, "unseen_objects");
-    CHECK(unseen_objects[1]["objects_opened"] == 100);
-    CHECK(unseen_objects[0]["rays"] == unseen_objects[1]["rays"]);
+    for (const char* cost : {"objects_opened", "rays"}) CHECK(unseen_objects[0][cost] == unseen_objects[1][cost]);
+    for (const char* bytes : {"objects", "scene"}) {
+      CHECK(unseen_objects[0]["bytes"][bytes] == unseen_objects[1]["bytes"][bytes]);
+    }
 
     for (const auto& row : series_of(report, "picture")) {
       CHECK(row["instances"] == row["count"]);
@@ -46,6 +48,11 @@ TEST_SUITE("kdbench scale") {
     for (const auto& row : unseen) {
       CHECK(row["instances"] == row["count"].get<int>() + 100);
       CHECK(row["rays"] == unseen[0]["rays"]);
+      CHECK(row["bytes"] == [&] {
+        auto same = unseen[0]["bytes"];
+        same["file"] = row["bytes"]["file"];
+        return same;
+      }());
     }
 
     for (const auto& row : series_of(report, "lights_lit")) {

@@ -210,6 +210,27 @@ TEST_SUITE("kdrender") {
     const json report = rendered(t, scene);
     CHECK(report["rays"]["primary_hits"] == 0);
     CHECK(!ran(report, "shadow, colour"));
+    CHECK(report["counts"]["instances"] == 0);
+    CHECK(report["skipped"]["objects_not_loaded"] == 3);
+    CHECK(report["skipped"]["instances_not_loaded"] == scene["characters"][0]["parts"].size());
+    CHECK(report["bytes"]["objects"] == 0);
+  }
+
+  TEST_CASE("what a film does not show is checked by --check alone") {
+    Terminal t;
+    t.set_up_spheres();
+    json scene = small_spheres(t);
+    t.write("away.json", scene.dump());
+    const std::string name = "compiled/icosphere.nkd";
+    std::string bytes = t.read(name);
+    bytes[bytes.size() / 2] ^= 1;  // in a section
+    t.write(name, bytes);
+    t.fails(kTool, {"away.json", "--check"}, ErrorClass::object, {name});
+    t.fails(kTool, {"away.json", "-o", "o.exr"}, ErrorClass::object, {name});
+    scene["camera"] = {{"position", {0, 2, 6}}, {"target", {0, 9, 6.1}}};
+    t.write("away.json", scene.dump());
+    t.succeeds(kTool, {"away.json", "-o", "o.exr"});
+    t.fails(kTool, {"away.json", "--check"}, ErrorClass::object, {name});
   }
 
   TEST_CASE("an unused object is not opened") {

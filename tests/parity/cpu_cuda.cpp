@@ -53,17 +53,18 @@ TEST_CASE("a film's frames on CUDA, reached by motion, are those of the CPU alon
     scene.film = {320, 180};
     render::RenderSettings settings;
     settings.samples = 3;
-    auto loaded = render::load_scene(scene, settings, 1);
+    const double frames[] = {1, 30, 77.5, 240, 2};
+    auto loaded = render::load_scene(scene, settings, frames);
     REQUIRE(loaded);
     auto group = render::DeviceGroup::open({*cuda}, false, *loaded, settings);
     REQUIRE(group);
-    for (double frame : {30.0, 77.5, 240.0, 2.0}) {
+    for (const double& frame : std::span(frames).subspan(1)) {
       const auto moved = render::move_to(*loaded, scene, frame);
       REQUIRE(moved);
       REQUIRE(group->follow(*moved));
       const auto on_cuda = group->render({});
       REQUIRE(on_cuda);
-      const auto alone = render::load_scene(scene, settings, frame);
+      const auto alone = render::load_scene(scene, settings, {&frame, 1});
       const auto on_cpu = render::DeviceGroup::open({render::cpu_device()}, false, *alone, settings)->render({});
       CHECK_MESSAGE(differing(on_cuda->film.colour, on_cpu->film.colour) == 0,
                     (std::string(name) + " " + std::to_string(frame)));

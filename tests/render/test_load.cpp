@@ -26,8 +26,9 @@ TEST_CASE("load: an object that no part places is not opened") {
   const auto loaded = load_scene(s, {});
   REQUIRE(loaded);
   CHECK(loaded->skipped.objects == 2);
-  CHECK_FALSE(loaded->objects[0].file);
-  CHECK(loaded->objects[1].file);
+  REQUIRE(loaded->objects.size() == 1);
+  CHECK(loaded->object_numbers[0] == 1);
+  CHECK(loaded->object_slots == std::vector<uint32_t>{render::kNone, 0, render::kNone});
   CHECK(loaded->instances.size() == 1);
 
   s.characters[0].parts.push_back(part(0, moved({})));

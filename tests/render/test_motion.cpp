@@ -43,18 +43,19 @@ TEST_CASE("motion: frames in any order are the frames alone") {
   const scene::Scene s = flock(unit_cube().write(folder.file("cube.nkd")));
   render::RenderSettings settings = all_aovs();
   settings.aovs.pop_back();  // visits: what a ray costs depends on the hierarchy, which motion refits
-  auto loaded = render::load_scene(s, settings, 1);
+  const double frames[] = {1, 2, 10.5, 20, 3, 400, 15, -5};
+  auto loaded = render::load_scene(s, settings, frames);
   REQUIRE(loaded);
   auto group = render::DeviceGroup::open({render::cpu_device()}, false, *loaded, settings);
   REQUIRE(group);
-  for (double frame : {1.0, 2.0, 10.5, 20.0, 3.0, 400.0, 15.0, -5.0}) {
+  for (const double& frame : frames) {
     const auto moved_parts = render::move_to(*loaded, s, frame);
     REQUIRE(moved_parts);
     CHECK(moved_parts->instances.size() <= 34);
     REQUIRE(group->follow(*moved_parts));
     const auto frame_by_motion = group->render({});
     REQUIRE(frame_by_motion);
-    const auto still = render::load_scene(s, settings, frame);
+    const auto still = render::load_scene(s, settings, {&frame, 1});
     const auto alone = render::DeviceGroup::open({render::cpu_device()}, false, *still, settings)->render({});
     CHECK(same_film(frame_by_motion->film, alone->film));
     CHECK(frame_by_motion->stats.shadow_rays == alone->stats.shadow_rays);

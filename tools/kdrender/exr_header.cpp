@@ -40,11 +40,10 @@ image::Matrix4 world_to_ndc(const scene::Camera& camera, const scene::FilmSize& 
 
 std::string objects_hash(const render::LoadedScene& scene) {
   std::vector<uint64_t> marks;
-  for (const render::LoadedObject& object : scene.objects) {
-    if (!object.file) continue;
-    const nkd::Summary& summary = object.file->summary();
-    const std::string& settings = summary.provenance.settings;
-    marks.insert(marks.end(), {summary.provenance.source_hash, hash_bytes(settings.data(), settings.size())});
+  for (const std::optional<nkd::Summary>& summary : scene.summaries) {
+    if (!summary) continue;
+    const std::string& settings = summary->provenance.settings;
+    marks.insert(marks.end(), {summary->provenance.source_hash, hash_bytes(settings.data(), settings.size())});
   }
   return hash_text(hash_bytes(marks.data(), marks.size() * sizeof(uint64_t)));
 }

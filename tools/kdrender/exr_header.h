@@ -13,8 +13,8 @@ namespace kd::tools {
 image::Matrix4 world_to_camera(const scene::Camera& camera);
 image::Matrix4 world_to_ndc(const scene::Camera& camera, const scene::FilmSize& film);
 
-/// Of the compiled objects of a scene: the same if they were made by the same settings from sources of the same
-/// content.
+/// Of the compiled objects that a scene places, loaded or not: the same if they were made by the same settings from
+/// sources of the same content.
 std::string objects_hash(const render::LoadedScene& scene);
 
 }  // namespace kd::tools

@@ -124,7 +124,7 @@ class FrameLoop {
     std::future<Result<Written>> done;
   };
 
-  Result<void> stand_at(int frame, const std::vector<render::Device>& devices);
+  Result<void> stand_at(int frame, const std::vector<int>& frames, const std::vector<render::Device>& devices);
   Result<void> start_writing(const RenderOptions& o, render::Frame frame, FrameNotes notes);
   Result<void> finish_writing();
 
@@ -140,8 +140,9 @@ class FrameLoop {
   std::unique_ptr<Writing> writing_;
 };
 
-/// Loads the scene, or moves it and its devices.
-Result<void> FrameLoop::stand_at(int frame, const std::vector<render::Device>& devices) {
+/// Loads the scene for all frames, or moves it and its devices.
+Result<void> FrameLoop::stand_at(int frame, const std::vector<int>& frames,
+                                 const std::vector<render::Device>& devices) {
   Timer timer;
   if (loaded_) {
     const auto moved = render::move_to(*loaded_, scene_, frame);
@@ -151,7 +152,7 @@ Result<void> FrameLoop::stand_at(int frame, const std::vector<render::Device>& d
     times_.load = timer.seconds();
     return followed;
   }
-  auto loaded = render::load_scene(scene_, settings_, frame);
+  auto loaded = render::load_scene(scene_, settings_, std::vector<double>(frames.begin(), frames.end()));
   if (!loaded) return loaded.error();
   loaded_ = std::move(*loaded);
   times_.load = timer.seconds();
@@ -201,7 +202,7 @@ Result<void> FrameLoop::render(const std::vector<int>& frames, const std::vector
       ++skipped;
       continue;
     }
-    if (auto stands = stand_at(number, devices); !stands) return stands;
+    if (auto stands = stand_at(number, frames, devices); !stands) return stands;
     if (objects.empty()) objects = objects_hash(*loaded_);
     const std::string mark = fingerprint(o, scene_hash_, objects, number);
     if (o.resume && is_done(o, mark)) {  // only now, for the first: the objects had to be opened for their hash
@@ -250,7 +251,8 @@ Result<void> render_command(const RenderOptions& o) {
   catch_interrupts();
   const bool text = !o.quiet && o.stats != "-";
   if (o.check) {
-    auto loaded = render::load_scene(*scene, *settings, frames->front());
+    const double first_frame = frames->front();
+    auto loaded = render::load_scene(*scene, *settings, {&first_frame, 1}, render::Extent::all);
     if (!loaded) return loaded.error();
     for (int frame : *frames) {
       if (const auto moved = render::move_to(*loaded, *scene, frame); !moved) return moved.error();

@@ -10,20 +10,13 @@ namespace kd::tools {
 
 namespace {
 
-uint64_t triangles_of(const render::LoadedObject& object) {
-  return object.file ? object.file->geometry().triangle_count() : 0;
-}
-
 /// As if every instance had triangles of its own.
 uint64_t instanced_triangles(const render::LoadedScene& scene) {
   uint64_t total = 0;
-  for (const scene::Instance& instance : scene.instances) total += triangles_of(scene.objects[instance.object]);
+  for (const scene::Instance& instance : scene.instances) {
+    total += scene.objects[scene.object_slots[instance.object]].file.geometry().triangle_count();
+  }
   return total;
-}
-
-size_t opened_objects(const render::LoadedScene& scene) {
-  return static_cast<size_t>(std::count_if(scene.objects.begin(), scene.objects.end(),
-                                           [](const auto& object) { return object.file.has_value(); }));
 }
 
 double mrays_per_second(const render::RenderStats& stats) {
@@ -46,11 +39,10 @@ Json render_json(const std::string& scene_path, const std::string& output, const
   }
   Json objects = Json::array();
   for (const render::LoadedObject& object : scene.objects) {
-    if (!object.file) continue;
-    objects.push_back({{"file", object.file->path()},
-                       {"triangles", triangles_of(object)},
-                       {"sah_cost", object.file->summary().tree.sah_cost},
-                       {"max_displacement", object.file->summary().max_displacement}});
+    objects.push_back({{"file", object.file.path()},
+                       {"triangles", object.file.geometry().triangle_count()},
+                       {"sah_cost", object.file.summary().tree.sah_cost},
+                       {"max_displacement", object.file.summary().max_displacement}});
   }
   const render::Skipped& skipped = scene.skipped;
   const render::Holding holding = group.holding();
@@ -75,7 +67,7 @@ Json render_json(const std::string& scene_path, const std::string& output, const
         {"write", times.write}}},
       {"stages", stages},
       {"counts",
-       {{"objects", opened_objects(scene)},
+       {{"objects", scene.objects.size()},
         {"instances", scene.instances.size()},
         {"triangles_as_seen", instanced_triangles(scene)},
         {"lights", scene.lights.size()}}},
@@ -89,6 +81,8 @@ Json render_json(const std::string& scene_path, const std::string& output, const
       {"objects", objects},
       {"skipped",
        {{"objects_not_opened", skipped.objects},
+        {"objects_not_loaded", skipped.unmet_objects},
+        {"instances_not_loaded", skipped.instances},
         {"sections_not_read", skipped.sections},
         {"black_lights", skipped.black_lights},
         {"lights_out_of_reach", skipped.lights_out_of_reach},
@@ -101,15 +95,16 @@ Json render_json(const std::string& scene_path, const std::string& output, const
 
 void print_contents(const std::string& scene_path, const render::LoadedScene& scene) {
   fmt::print("{}: sound: {} objects, {} instances, {} triangles as seen, {} lights, {} x {} pixels\n", scene_path,
-             opened_objects(scene), scene.instances.size(), instanced_triangles(scene), scene.lights.size(),
+             scene.objects.size(), scene.instances.size(), instanced_triangles(scene), scene.lights.size(),
              scene.film.width, scene.film.height);
 }
 
 void print_render(const std::string& output, const render::DeviceGroup& group, const render::LoadedScene& scene,
                   const render::RenderStats& stats, const RenderTimes& times) {
   const render::Holding holding = group.holding();
-  fmt::print("  {} objects, {} instances, {} triangles as seen, {} lights\n", opened_objects(scene),
-             scene.instances.size(), instanced_triangles(scene), scene.lights.size());
+  fmt::print("  {} objects, {} instances, {} triangles as seen, {} lights; {} objects and {} instances not needed\n",
+             scene.objects.size(), scene.instances.size(), instanced_triangles(scene), scene.lights.size(),
+             scene.skipped.objects + scene.skipped.unmet_objects, scene.skipped.instances);
   fmt::print("  {} primary rays ({} hit), {} shadow rays ({} not needed): {:.2f} Mrays/s{}\n", stats.primary_rays,
              stats.primary_hits, stats.shadow_rays, stats.primary_hits * scene.lights.size() - stats.shadow_rays,
              mrays_per_second(stats), group.strips() > 1 ? fmt::format(", in {} strips", group.strips()) : "");

@@ -27,8 +27,7 @@ void DeviceScene::lay_out(const LoadedScene& scene, TriangleLayout layout) {
   objects_.assign(scene.objects.size(), {});
   object_views_.assign(scene.objects.size(), {});
   for (size_t i = 0; i < scene.objects.size(); ++i) {
-    if (!scene.objects[i].file) continue;
-    const nkd::ObjectFile& file = *scene.objects[i].file;
+    const nkd::ObjectFile& file = scene.objects[i].file;
     const nkd::Attributes& a = scene.objects[i].attributes;
     objects_[i] = object_pieces(memory_, file.geometry(), layout);
     object_views_[i] = {
@@ -38,8 +37,10 @@ void DeviceScene::lay_out(const LoadedScene& scene, TriangleLayout layout) {
         memory_.piece<uint16_t>(a.material_ids.size())};
   }
   view_.objects = memory_.piece<ShadedObjectView>(scene.objects.size());
+  view_.object_numbers = memory_.piece<uint32_t>(scene.object_numbers.size());
   memory_.section("instances");
   view_.instances = memory_.piece<InstanceView>(scene.instances.size());
+  view_.instance_numbers = memory_.piece<uint32_t>(scene.instance_numbers.size());
   view_.overrides = memory_.piece<Material>(scene.overrides.size());
   memory_.section("hierarchy");
   view_.hierarchy = memory_.piece<HierarchyNode>(scene.hierarchy.size());
@@ -57,16 +58,13 @@ Result<void> DeviceScene::create(const LoadedScene& scene, TriangleLayout layout
 
 Result<void> DeviceScene::fill(const LoadedScene& scene, cudaStream_t stream) {
   Staging staging;
-  for (const LoadedObject& object : scene.objects) {
-    if (object.file) staging.include(object.file->geometry());
-  }
+  for (const LoadedObject& object : scene.objects) staging.include(object.file.geometry());
   if (auto allocated = staging.allocate(); !allocated) return allocated;
   const char* action = "uploading the scene";
   for (size_t i = 0; i < scene.objects.size(); ++i) {
-    if (!scene.objects[i].file) continue;
     const nkd::Attributes& a = scene.objects[i].attributes;
     const ShadedObjectView& v = object_views_[i];
-    KD_CUDA_TRY(fill_object(objects_[i], staging, scene.objects[i].file->geometry(), stream), action);
+    KD_CUDA_TRY(fill_object(objects_[i], staging, scene.objects[i].file.geometry(), stream), action);
     KD_CUDA_TRY(fill_piece(v.source_primitives, a.source_primitives, stream), action);
     KD_CUDA_TRY(fill_piece(v.normals, a.normals, stream), action);
     KD_CUDA_TRY(fill_piece(v.normal_indices, a.normal_indices, stream), action);
@@ -76,6 +74,8 @@ Result<void> DeviceScene::fill(const LoadedScene& scene, cudaStream_t stream) {
   const std::vector<InstanceView> instances = instance_views(scene);
   KD_CUDA_TRY(fill_piece(view_.objects, std::span<const ShadedObjectView>(object_views_), stream), action);
   KD_CUDA_TRY(fill_piece(view_.instances, std::span<const InstanceView>(instances), stream), action);
+  KD_CUDA_TRY(fill_piece(view_.object_numbers, std::span<const uint32_t>(scene.object_numbers), stream), action);
+  KD_CUDA_TRY(fill_piece(view_.instance_numbers, scene.instance_numbers, stream), action);
   KD_CUDA_TRY(fill_piece(view_.overrides, std::span<const Material>(scene.overrides), stream), action);
   KD_CUDA_TRY(fill_piece(view_.hierarchy, scene.hierarchy, stream), action);
   KD_CUDA_TRY(fill_piece(view_.lights, std::span<const LightView>(scene.lights), stream), action);
@@ -97,7 +97,7 @@ Result<void> DeviceScene::follow(const LoadedScene& scene, const Moved& moved, c
   KD_CUDA_TRY(fill_piece(view_.hierarchy, scene.hierarchy, stream), action);
   std::vector<InstanceView> views;
   views.reserve(moved.instances.size());
-  for (uint32_t i : moved.instances) views.push_back(instance_view(scene.instances[i]));
+  for (uint32_t i : moved.instances) views.push_back(instance_view(scene, scene.instances[i]));
   DeviceMemory arrived;
   InstanceView* arrived_views = nullptr;
   uint32_t* indices = nullptr;

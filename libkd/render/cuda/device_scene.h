@@ -25,6 +25,8 @@ class DeviceScene {
     view.objects = view_.objects;
     view.overrides = view_.overrides;
     view.lights = view_.lights;
+    view.instance_numbers = view_.instance_numbers;
+    view.object_numbers = view_.object_numbers;
   }
   size_t bytes() const { return memory_.bytes(); }
 

@@ -38,10 +38,10 @@ struct WriteAov {
         vector(met ? surface_at(frame.scene, hit, primary_direction(frame, pixel)).position : Vec3d{0, 0, 0});
         break;
       case image::Aov::object:
-        scalar(met ? frame.scene.instances[hit.instance].object : kNone);
+        scalar(met ? frame.scene.object_numbers[frame.scene.instances[hit.instance].object] : kNone);
         break;
       case image::Aov::instance:
-        scalar(hit.instance);
+        scalar(met && frame.scene.instance_numbers ? frame.scene.instance_numbers[hit.instance] : hit.instance);
         break;
       case image::Aov::primitive:
         scalar(met ? source_primitive(hit) : kNone);
