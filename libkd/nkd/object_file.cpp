@@ -69,7 +69,7 @@ Result<ObjectFile> ObjectFile::open(const std::string& path) {
 }
 
 Result<ObjectFile> ObjectFile::open_header(const std::string& path) {
-  auto file = MappedFile::open(path);
+  auto file = MappedFile::open(path, MappedFile::Access::sparse);
   if (!file) return file.error();
   ObjectFile o;
   o.path_ = path;
@@ -84,7 +84,13 @@ Result<ObjectFile> ObjectFile::open_header(const std::string& path) {
   return o;
 }
 
+template <class... Sections>
+void ObjectFile::will_read(const Sections&... sections) const {
+  (file_.will_read(std::as_bytes(sections)), ...);
+}
+
 Result<void> ObjectFile::check_geometry() const {
+  will_read(geometry_.nodes, geometry_.references, geometry_.triangles, geometry_.vertices);
   if (auto f = check_geometry_checksums(*object_, geometry_)) return unsound(path_, *f);
   if (auto f = check_nodes(geometry_)) return unsound(path_, *f);
   if (auto f = check_indices(geometry_)) return unsound(path_, *f);
@@ -99,24 +105,28 @@ bool ObjectFile::has_materials() const { return object_->material_ids() && objec
 
 Result<std::span<const uint32_t>> ObjectFile::source_primitives() const {
   const Attributes a = read_attributes(*object_);
+  will_read(a.source_primitives);
   if (auto f = check_source_primitives_section(*object_, a, geometry_.triangle_count())) return unsound(path_, *f);
   return a.source_primitives;
 }
 
 Result<ObjectFile::Normals> ObjectFile::normals() const {
   const Attributes a = read_attributes(*object_);
+  will_read(a.normals, a.normal_indices);
   if (auto f = check_normal_sections(*object_, a, geometry_.triangle_count())) return unsound(path_, *f);
   return Normals{a.normals, a.normal_indices};
 }
 
 Result<ObjectFile::Materials> ObjectFile::materials() const {
   const Attributes a = read_attributes(*object_);
+  will_read(a.materials, a.material_ids);
   if (auto f = check_material_sections(*object_, a, geometry_.triangle_count())) return unsound(path_, *f);
   return Materials{a.materials, a.material_ids};
 }
 
 std::vector<Finding> ObjectFile::check_attributes() const {
   const Attributes a = read_attributes(*object_);
+  will_read(a.source_primitives, a.normals, a.normal_indices, a.materials, a.material_ids);
   const size_t count = geometry_.triangle_count();
   std::vector<Finding> findings;
   for (const Check& f : {check_source_primitives_section(*object_, a, count), check_normal_sections(*object_, a, count),

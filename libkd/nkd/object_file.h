@@ -1,6 +1,6 @@
 // A mapped .nkd. Nothing in a file is trusted: opening one checks all that traversal relies on, so that a hostile file
 // can neither make it read outside the sections nor run forever. Attribute sections are checked when they are asked
-// for; until then their pages are not read.
+// for; until then none of their pages is read from disk, but the one in which a section begins, where its size is.
 #pragma once
 
 #include <string>
@@ -52,6 +52,9 @@ class ObjectFile {
   std::vector<Finding> check_attributes() const;
 
  private:
+  template <class... Sections>
+  void will_read(const Sections&... sections) const;
+
   std::string path_;
   MappedFile file_;
   const nkd_schema::Object* object_ = nullptr;
