@@ -53,7 +53,14 @@ constexpr Member kPrimitive[] = {{"attributes", object, kOne, kAttributes},
 constexpr Member kMesh[] = {{"name", text}, {"primitives", object, kMany, kPrimitive}};
 
 constexpr Member kPbr[] = {{"baseColorFactor", number, 4}, {"metallicFactor", number}, {"roughnessFactor", number}};
-constexpr Member kMaterial[] = {{"name", text}, {"pbrMetallicRoughness", object, kOne, kPbr}};
+constexpr Member kTexture[] = {{"index", index}};
+constexpr Member kEmissiveStrength[] = {{"emissiveStrength", number}};
+constexpr Member kMaterialExtensions[] = {{"KHR_materials_emissive_strength", object, kOne, kEmissiveStrength}};
+constexpr Member kMaterial[] = {{"emissiveFactor", number, 3},
+                                {"emissiveTexture", object, kOne, kTexture},
+                                {"extensions", object, kOne, kMaterialExtensions},
+                                {"name", text},
+                                {"pbrMetallicRoughness", object, kOne, kPbr}};
 
 constexpr Member kPerspective[] = {{"aspectRatio", number}, {"yfov", number}, {"zfar", number}, {"znear", number}};
 constexpr Member kOrthographic[] = {{"xmag", number}, {"ymag", number}, {"zfar", number}, {"znear", number}};

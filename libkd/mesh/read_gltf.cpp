@@ -1,7 +1,8 @@
 // glTF 2.0: meshes of triangles with their normals and materials. Materials are metals and dielectrics there and
 // Phong's here: the base colour is diffuse and ambient, what is reflected at normal incidence (4 % of a dielectric's
 // light, a metal's base colour) is specular as far as the surface is smooth, and the exponent is that of Blinn and
-// Phong's distribution which is as wide as GGX's (B. Karis, "Specular BRDF Reference", 2013).
+// Phong's distribution which is as wide as GGX's (B. Karis, "Specular BRDF Reference", 2013). Textures are not read; a
+// material whose emission has one is left dark, for such a factor is white and the texture nearly black.
 #include <algorithm>
 #include <limits>
 #include <map>
@@ -25,6 +26,23 @@ constexpr double kMostShininess = 1000;
 constexpr uint64_t kFreeCorners = uint64_t{1} << 25;
 constexpr uint64_t kCornersPerByte = 16;
 
+/// What the factor is multiplied by, >= 0 (KHR_materials_emissive_strength).
+double emissive_strength(const tinygltf::Material& source) {
+  const auto extension = source.extensions.find("KHR_materials_emissive_strength");
+  if (extension == source.extensions.end() || !extension->second.Has("emissiveStrength")) return 1;
+  return std::max(0.0, extension->second.Get("emissiveStrength").GetNumberAsDouble());
+}
+
+Vec3f emission_of(const tinygltf::Material& source) {
+  if (source.emissiveTexture.index >= 0 || source.emissiveFactor.size() != 3) return {0, 0, 0};
+  const double strength = emissive_strength(source);
+  const auto one = [&](double factor) {
+    const double emitted = std::clamp(factor, 0.0, 1.0) * strength;
+    return static_cast<float>(std::min<double>(emitted, std::numeric_limits<float>::max()));
+  };
+  return {one(source.emissiveFactor[0]), one(source.emissiveFactor[1]), one(source.emissiveFactor[2])};
+}
+
 Material material_of(const tinygltf::Material& source) {
   const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
   const auto unit = [](double v) { return std::clamp(v, 0.0, 1.0); };
@@ -37,6 +55,7 @@ Material material_of(const tinygltf::Material& source) {
     material.specular.set(k, static_cast<float>(reflected * (1 - roughness)));
   }
   material.ambient = material.diffuse;
+  material.emission = emission_of(source);
   const double width = roughness * roughness;
   const double exponent = width > 0 ? 2 / (width * width) - 2 : kMostShininess;
   material.shininess = static_cast<float>(std::clamp(exponent, 1.0, kMostShininess));

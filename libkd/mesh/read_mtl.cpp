@@ -78,6 +78,7 @@ void MtlReader::add(const tinyobj::material_t& source, bool has_ambient) {
   material.diffuse = colour("Kd", source.diffuse, standard.diffuse);
   material.specular = colour("Ks", source.specular, standard.specular);
   material.shininess = checked("Ns", source.shininess, standard.shininess);
+  material.emission = colour("Ke", source.emission, standard.emission);
   material.ambient =
       has_ambient && !ambient_from_diffuse_ ? colour("Ka", source.ambient, standard.ambient) : material.diffuse;
   if (index_of_.emplace(name, static_cast<int>(materials.size())).second) {

@@ -1,6 +1,7 @@
 // What a .nkd holds, as plain spans: what a writer is given and what a reader gives.
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <span>
@@ -15,7 +16,7 @@
 
 namespace kd::nkd {
 
-constexpr uint32_t kFormatVersion = 4;
+constexpr uint32_t kFormatVersion = 5;
 
 struct Provenance {
   std::string source_name;   // without folders; of several meshes in it, which
@@ -63,6 +64,11 @@ struct Summary {
   TreeStatistics tree;
   Provenance provenance;
   std::vector<std::string> material_names;
+  bool emissive = false;  // some material has emission; a writer sees for itself
 };
+
+inline bool is_emissive(std::span<const Material> materials) {
+  return std::any_of(materials.begin(), materials.end(), [](const Material& m) { return !(m.emission == Vec3f{}); });
+}
 
 }  // namespace kd::nkd

@@ -49,6 +49,7 @@ uint64_t header_checksum(const nkd_schema::Object& o) {
   digest.add_size(o.materials());
   digest.add_size(o.material_names());
   digest.add_size(o.material_ids());
+  digest.add(o.emissive());
   if (o.material_names()) {
     for (const auto* name : *o.material_names()) digest.add_text(name);
   }

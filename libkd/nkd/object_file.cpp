@@ -19,6 +19,7 @@ Summary read_summary(const nkd_schema::Object& o) {
   s.tree = {t.sah_cost(), t.inner_nodes(), t.leaves(), t.empty_leaves(), t.depth(), t.largest_leaf()};
   const nkd_schema::Provenance& p = *o.provenance();
   s.provenance = {text(p.source_name()), p.source_hash(), text(p.settings()), text(p.writer())};
+  s.emissive = o.emissive();
   if (o.material_names()) {
     for (const auto* name : *o.material_names()) s.material_names.push_back(text(name));
   }
@@ -54,7 +55,9 @@ Check check_normal_sections(const nkd_schema::Object& o, const Attributes& a, si
 Check check_material_sections(const nkd_schema::Object& o, const Attributes& a, size_t triangle_count) {
   if (auto f = check_checksum(a.materials, o.checksums()->materials(), "materials")) return f;
   if (auto f = check_checksum(a.material_ids, o.checksums()->material_ids(), "material_ids")) return f;
-  return check_materials(a, triangle_count);
+  if (auto f = check_materials(a, triangle_count)) return f;
+  if (is_emissive(a.materials) == o.emissive()) return std::nullopt;
+  return found(Issue::material_value, "emission where the header has none, or none where it has some");
 }
 
 Error unsound(const std::string& path, const Finding& finding) { return {ErrorClass::object, path, finding.line()}; }

@@ -109,8 +109,8 @@ Check check_materials(const Attributes& a, size_t triangle_count) {
   for (size_t i = 0; i < a.materials.size(); ++i) {
     const Material& m = a.materials[i];
     const auto sound = [](Vec3f c) { return is_finite(vec_cast<double>(c)) && c.x >= 0 && c.y >= 0 && c.z >= 0; };
-    if (!sound(m.ambient) || !sound(m.diffuse) || !sound(m.specular) || !std::isfinite(m.shininess) ||
-        m.shininess < 0) {
+    if (!sound(m.ambient) || !sound(m.diffuse) || !sound(m.specular) || !sound(m.emission) ||
+        !std::isfinite(m.shininess) || m.shininess < 0) {
       return found(Issue::material_value, fmt::format("material {}", i));
     }
   }

@@ -98,6 +98,7 @@ Result<uint64_t> write_object(const std::string& path, const Summary& summary, c
   object.add_materials(materials);
   object.add_material_names(names);
   object.add_material_ids(material_ids);
+  object.add_emissive(is_emissive(attributes.materials));
   object.add_checksums(&checksums);
   object.add_tree(&tree);
   object.add_provenance(provenance);

@@ -194,7 +194,7 @@ Result<void> load_objects(LoadedScene& loaded, Headers headers, std::span<const 
     loaded.object_numbers.push_back(i);
     loaded.objects.push_back({std::move(*headers.files[i]), {}});
     Needs own = needs;
-    own.materials = needs.materials && uses[i].own_materials;
+    own.materials = uses[i].own_materials && (needs.materials || loaded.summaries[i]->emissive);
     if (auto attributes = load_attributes(loaded.objects.back(), own, loaded.skipped); !attributes) return attributes;
   }
   return {};

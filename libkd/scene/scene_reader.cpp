@@ -66,6 +66,7 @@ Material Reader::read_material(const scene_fb::Material& source, const std::stri
   material.ambient = read_colour(source.ambient(), material.ambient, at + ".ambient");
   material.diffuse = read_colour(source.diffuse(), material.diffuse, at + ".diffuse");
   material.specular = read_colour(source.specular(), material.specular, at + ".specular");
+  material.emission = read_colour(source.emission(), material.emission, at + ".emission");
   if (fits_float(source.shininess())) {
     material.shininess = static_cast<float>(source.shininess());
   } else {

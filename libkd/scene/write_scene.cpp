@@ -155,8 +155,9 @@ class Writer {
   std::string placement(const FramePlacement& f) { return ", \"frame\": " + frame(f.frame); }
   std::string placement(const TransformPlacement& transform);
   std::string material(const Material& m) {
-    return fmt::format(R"({{"ambient": {}, "diffuse": {}, "specular": {}, "shininess": {}}})", vector(m.ambient),
-                       vector(m.diffuse), vector(m.specular), number(m.shininess));
+    return fmt::format(R"({{"ambient": {}, "diffuse": {}, "specular": {}, "shininess": {}, "emission": {}}})",
+                       vector(m.ambient), vector(m.diffuse), vector(m.specular), number(m.shininess),
+                       vector(m.emission));
   }
   std::string rotation(const Rotation& r) {
     return fmt::format(R"({{"axis": {}, "degrees": {}}})", vector(r.axis), number(r.degrees));

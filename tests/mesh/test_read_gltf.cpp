@@ -178,6 +178,26 @@ TEST_CASE("gltf: materials") {
   CHECK(mesh.normal_indices[3] == std::array<uint32_t, 3>{0, 1, 2});
 }
 
+TEST_CASE("gltf: emission is its factor times its strength, and left dark where a texture has it") {
+  const auto emission = [](const std::string& members) {
+    const std::string gltf = replaced(square_gltf(R"(, "materials": [{"name": "a", )" + members + "}]"),
+                                      R"("indices": 2})", R"("indices": 2, "material": 0})");
+    return sound(read(gltf)).meshes[0].mesh.materials[0].emission;
+  };
+  const std::string factor = R"("emissiveFactor": [1, 0.5, 0])";
+  const auto strength = [](const std::string& value) {
+    return R"(, "extensions": {"KHR_materials_emissive_strength": {)" + value + "}}";
+  };
+  CHECK(emission(factor) == Vec3f{1, 0.5f, 0});
+  CHECK(emission(factor + strength(R"("emissiveStrength": 8)")) == Vec3f{8, 4, 0});
+  CHECK(emission(factor + strength(R"("emissiveStrength": 0.5)")) == Vec3f{0.5f, 0.25f, 0});
+  CHECK(emission(factor + strength(R"("emissiveStrength": -3)")) == Vec3f{0, 0, 0});
+  CHECK(emission(factor + strength(R"("emissiveStrength": 1e300)")).x == std::numeric_limits<float>::max());
+  CHECK(emission(factor + strength("")) == Vec3f{1, 0.5f, 0});
+  CHECK(emission(R"("emissiveFactor": [-1, 7, 0.25])") == Vec3f{0, 1, 0.25f});
+  CHECK(emission(factor + R"(, "emissiveTexture": {"index": 0})") == Vec3f{0, 0, 0});
+}
+
 TEST_CASE("gltf: nodes place meshes, through translations, rotations, scales and matrices") {
   const std::string nodes = R"("nodes": [
 {"name": "parent", "translation": [10, 0, 0], "rotation": [0, 0, 0.70710678118654757, 0.70710678118654757], "children": [2, 1]},

@@ -192,16 +192,17 @@ TEST_CASE("obj: normals have length 1, and useless ones are no normals") {
 TEST_CASE("mtl: values, defaults and what is wrong with them") {
   const std::string obj = "mtllib m.mtl\n" + kCorners + "f 1 2 3\nusemtl a\nf 1 2 4\n";
   const std::string mtl =
-      "Kd 1 1 1\nnewmtl a\r\nKa 0 0 0\nKd 0.5 0.25 1\nKs 1 1 1\nNs 32\nnewmtl b\nKd -1 0.5 1e999\nNs -3\n";
+      "Kd 1 1 1\nnewmtl a\r\nKa 0 0 0\nKd 0.5 0.25 1\nKs 1 1 1\nNs 32\nKe 0 1.5 2\nnewmtl b\nKd -1 0.5 1e999\nNs -3\n";
   SUBCASE("as written") {
     const auto mesh = read(obj, mtl);
     REQUIRE(mesh);
     CHECK(mesh->material_names == std::vector<std::string>{"a", "b", "default"});
     CHECK(mesh->material_ids == std::vector<uint16_t>{2, 0});
-    CHECK(mesh->materials[0] == Material{{0, 0, 0}, {0.5f, 0.25f, 1}, {1, 1, 1}, 32});
+    CHECK(mesh->materials[0] == Material{{0, 0, 0}, {0.5f, 0.25f, 1}, {1, 1, 1}, 32, {0, 1.5f, 2}});
     CHECK(mesh->materials[1].diffuse == Vec3f{0.8f, 0.5f, 0.8f});
     CHECK(mesh->materials[1].ambient == mesh->materials[1].diffuse);
     CHECK(mesh->materials[1].shininess == 1);
+    CHECK(mesh->materials[1].emission == Vec3f{0, 0, 0});
     CHECK(mesh->materials[2] == Material{});
     CHECK(mesh->warnings.size() == 3);
   }

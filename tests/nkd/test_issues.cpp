@@ -196,6 +196,7 @@ const std::vector<BadFile>& bad_files() {
       {Issue::materials, [](Contents& c) { c.material_ids[3] = 2; }, {}},
       {Issue::material_value, [](Contents& c) { c.materials[1].diffuse.x = -1; }, {}},
       {Issue::material_value, [](Contents& c) { c.materials[0].shininess = kNaN; }, {}},
+      {Issue::material_value, [](Contents& c) { c.materials[0].emission.y = -1; }, {}},
       {Issue::checksum, {}, [](std::string& b) { bytes_of(b, good().references)[0] ^= 1; }},
       {Issue::checksum, {}, [](std::string& b) { bytes_of(b, good().material_ids)[0] ^= 1; }},
       {Issue::plane_outside,

@@ -52,6 +52,7 @@ TEST_CASE("nkd: every section comes back, at every vertex width") {
     CHECK(s.provenance.settings == "--bits " + std::to_string(bits));
     CHECK(s.provenance.writer == "test 1");
     CHECK(s.material_names == c.summary.material_names);
+    CHECK_FALSE(s.emissive);
 
     CHECK(file->has_normals());
     CHECK(file->has_materials());
@@ -155,4 +156,17 @@ TEST_CASE("nkd: what cannot be read or written") {
   const auto unwritten = nkd::write_object(folder.file("no/such/folder.nkd"), c.summary, c.geometry(), {});
   REQUIRE_FALSE(unwritten);
   CHECK(unwritten.error().error_class == ErrorClass::output);
+}
+
+TEST_CASE("round trip: the header says whether some material has emission") {
+  const TempFolder folder;
+  Contents c(box_shape({0, 0, 0}, {1023, 1023, 1023}), 10);
+  c.materials[1].emission = {0, 2, 0.5f};
+  const std::string path = c.write(folder.file("lamp.nkd"));
+  const auto file = nkd::ObjectFile::open(path);
+  REQUIRE(file);
+  CHECK(file->summary().emissive);
+  REQUIRE(file->materials());
+  CHECK(file->materials()->values[1] == c.materials[1]);
+  CHECK(verdict(path) == "sound");
 }

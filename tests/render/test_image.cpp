@@ -107,6 +107,42 @@ TEST_CASE("image: Phong's value at a lit point, by hand") {
   expect(both.colour(both.centre()), ambient + added * 2.0);
 }
 
+TEST_CASE("image: emission is added to what the lights leave, and is there without any") {
+  const Stage stage;
+  auto s = scene_of({stage.cube}, {stage.block(moved({}))});
+  Material& material = *s.characters[0].parts[0].material;
+  const Rendered black(s, {});
+  expect(black.colour(black.centre()), {0, 0, 0});
+  material.emission = {3, 0.5f, 0};
+  const Rendered glowing(s, {});
+  expect(glowing.colour(glowing.centre()), {3, 0.5, 0});
+  CHECK(glowing.frame.stats.shadow_rays == 0);
+  s.ambient = {0.5f, 1, 0.25f};
+  const Rendered ambient(s, {});
+  expect(ambient.colour(ambient.centre()), {3.05, 0.7, 0.075});
+  scene::Light sun;
+  sun.kind = scene::LightKind::directional;
+  sun.direction = {0, 0, -1};
+  s.lights = {sun};
+  const Rendered lit(s, {});
+  material.emission = {0, 0, 0};
+  const Rendered unlit(s, {});
+  const Vec3d without = vec_cast<double>(unlit.colour(unlit.centre()));
+  expect(lit.colour(lit.centre()), without + Vec3d{3, 0.5, 0});
+}
+
+TEST_CASE("image: an object's own emission") {
+  const Stage stage;
+  Contents lamp(box_shape({0, 0, 0}, {1023, 1023, 1023}), 10);
+  for (Material& m : lamp.materials) m.emission = {0.25f, 8, 1};
+  auto s = scene_of({lamp.write(stage.folder.file("lamp.nkd"))}, {part(0, scene::BoxPlacement{})});
+  const Rendered r(s, {});
+  expect(r.colour(r.centre()), {0.25, 8, 1});
+  s.characters[0].parts[0].material = Material{};
+  const Rendered dark(s, {});
+  expect(dark.colour(dark.centre()), {0, 0, 0});
+}
+
 TEST_CASE("image: a shadowed point has its ambient part only") {
   const Stage stage;
   // A small block between the light and the centre of the front face.

@@ -39,7 +39,7 @@ Scene full_scene(const test::TempFolder& folder) {
   frame.placement = FramePlacement{{{-0.0, 2e-10, 3}, {1, 0.5, 0}, {0, 1e10, 0}, {0, 0, -1}}};
   moved.placement = TransformPlacement{{1, 0, 0}, {0, 0, 1}, 0, {1, 1, -2}};
   turned.placement = TransformPlacement{{0, 0, 0}, {1, 2, 3}, 33.3, {1, 1, 1}};
-  turned.material = Material{{0.1f, 0.2f, 0.3f}, {1, 1, 1}, {0, 0.5f, 0}, 12.5f};
+  turned.material = Material{{0.1f, 0.2f, 0.3f}, {1, 1, 1}, {0, 0.5f, 0}, 12.5f, {0, 3, 0.25f}};
   plain.name = "tab\tand \"quotes\"";
   plain.object = 1;
   s.characters = {{"first", {box, frame, moved}}, {"", {turned, plain}}};

@@ -1,4 +1,5 @@
-// Ambient: what a pixel has before any light reaches it; the background where its ray met nothing.
+// Ambient: what a pixel has before any light reaches it, the surface's emission included; the background where its ray
+// met nothing.
 #pragma once
 
 #include "render/stages/surface.h"
@@ -8,7 +9,8 @@ namespace kd::render {
 
 KD_HD KD_INLINE Pixel ambient_of(const SceneView& scene, const SurfaceHit& hit) {
   if (hit.instance == kNone) return {scene.background, 0};
-  return {scene.ambient * material_at(scene, hit).ambient, 1};
+  const Material material = material_at(scene, hit);
+  return {scene.ambient * material.ambient + material.emission, 1};
 }
 
 /// What a sample begins with: its ambient colour, added to the pixel's samples before it.
