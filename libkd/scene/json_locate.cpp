@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdint>
+#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -169,7 +170,7 @@ bool Scanner::array(const Shape& element, size_t wanted_count) {
   skip_space();
   if (!take(']')) {
     for (bool again = true; again; ++count) {
-      path_ += fmt::format("[{}]", count);
+      fmt::format_to(std::back_inserter(path_), "[{}]", count);
       if (!value(element)) return false;
       path_.resize(outer);
       if (!more(']', again)) return false;

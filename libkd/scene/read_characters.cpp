@@ -37,7 +37,7 @@ void Reader::name_characters(const scene_fb::Scene& source) {
   }
 }
 
-Character Reader::read_character(const scene_fb::Character& source, const std::string& at) {
+Character Reader::read_character(const scene_fb::Character& source, const Place& at) {
   Character character;
   character.name = read_text(source.name(), at + ".name");
   character.line = lines_.characters[scene_.characters.size()];
@@ -45,13 +45,13 @@ Character Reader::read_character(const scene_fb::Character& source, const std::s
   character.placement = read_placement(source, at);
   character.parts.reserve(source.parts()->size());
   for (const scene_fb::Part* part : *source.parts()) {
-    character.parts.push_back(read_part(*part, fmt::format("{}.parts[{}]", at, character.parts.size())));
+    character.parts.push_back(read_part(*part, Place{".parts", &at, character.parts.size()}));
   }
   if (character.parts.empty()) fail(at + ".parts", "the character has no parts: it needs at least one");
   return character;
 }
 
-Part Reader::read_part(const scene_fb::Part& source, const std::string& at) {
+Part Reader::read_part(const scene_fb::Part& source, const Place& at) {
   Part part;
   part.line = lines_.parts[parts_read_++];
   part.name = read_text(source.name(), at + ".name");
@@ -68,7 +68,7 @@ Part Reader::read_part(const scene_fb::Part& source, const std::string& at) {
 }
 
 /// The object or the character that a part places.
-void Reader::read_placed(const scene_fb::Part& source, const std::string& at, Part& part) {
+void Reader::read_placed(const scene_fb::Part& source, const Place& at, Part& part) {
   if (source.character()) {
     exclude(source.object(), "object", "character", at);
     exclude(source.box(), "box", "character", at);
@@ -76,12 +76,12 @@ void Reader::read_placed(const scene_fb::Part& source, const std::string& at, Pa
   } else if (source.object()) {
     part.object = find_object(*source.object(), at + ".object");
   } else {
-    fail(at, fmt::format("'{}' lacks 'object', or 'character'", at.substr(at.rfind('.') + 1)));
+    fail(at, fmt::format("'{}' lacks 'object', or 'character'", at.last()));
   }
 }
 
 template <class Source>
-void Reader::exclude_transform(const Source& source, const char* given, const std::string& at) {
+void Reader::exclude_transform(const Source& source, const char* given, const Place& at) {
   exclude(source.translate(), "translate", given, at);
   exclude(source.rotate(), "rotate", given, at);
   exclude(source.scale(), "scale", given, at);
@@ -89,14 +89,14 @@ void Reader::exclude_transform(const Source& source, const char* given, const st
 }
 
 template <class Source>
-CharacterPlacement Reader::read_placement(const Source& source, const std::string& at) {
+CharacterPlacement Reader::read_placement(const Source& source, const Place& at) {
   if (!source.frame()) return read_transform(source, at);
   exclude_transform(source, "frame", at);
   return FramePlacement{to_frame(*source.frame())};
 }
 
 template <class Source>
-TransformPlacement Reader::read_transform(const Source& source, const std::string& at) {
+TransformPlacement Reader::read_transform(const Source& source, const Place& at) {
   TransformPlacement placement;
   if (source.translate()) placement.translate = to_vec3d(*source.translate());
   if (source.scale()) placement.scale = read_scale(*source.scale(), at + ".scale");
@@ -107,7 +107,7 @@ TransformPlacement Reader::read_transform(const Source& source, const std::strin
   }
   placement.interpolation = to_interpolation(source.interpolation());
   placement.keys = read_keys<TransformKey>(
-      source.keys(), at, [&](const scene_fb::TransformKey& k, const std::string& at_key, TransformKey& key) {
+      source.keys(), at, [&](const scene_fb::TransformKey& k, const Place& at_key, TransformKey& key) {
         if (k.translate()) key.translate = to_vec3d(*k.translate());
         if (k.rotate()) key.rotate = read_rotation(*k.rotate(), at_key + ".rotate");
         if (k.scale()) key.scale = read_scale(*k.scale(), at_key + ".scale");
@@ -115,27 +115,27 @@ TransformPlacement Reader::read_transform(const Source& source, const std::strin
   return placement;
 }
 
-Vec3d Reader::read_scale(const scene_fb::Vec3& source, const std::string& at) {
+Vec3d Reader::read_scale(const scene_fb::Vec3& source, const Place& at) {
   const Vec3d scale = to_vec3d(source);
   if (scale.x == 0 || scale.y == 0 || scale.z == 0) fail(at, "no component of 'scale' may be zero");
   return scale;
 }
 
-Rotation Reader::read_rotation(const scene_fb::Rotation& source, const std::string& at) {
+Rotation Reader::read_rotation(const scene_fb::Rotation& source, const Place& at) {
   const Rotation rotation{to_vec3d(*source.axis()), source.degrees().value_or(0)};
   if (rotation.axis == Vec3d{0, 0, 0}) fail(at + ".axis", "the rotation's 'axis' must not be zero");
   if (!source.degrees()) fail(at, "the rotation lacks 'degrees'");
   return rotation;
 }
 
-uint32_t Reader::find_object(const flatbuffers::String& name, const std::string& at) {
+uint32_t Reader::find_object(const flatbuffers::String& name, const Place& at) {
   const auto found = object_index_.find(name.str());
   if (found != object_index_.end()) return found->second;
   fail(at, fmt::format("there is no object '{}': {}", read_text(&name, at), known_names(scene_.objects, "objects")));
   return 0;
 }
 
-uint32_t Reader::find_character(const flatbuffers::String& name, const std::string& at) {
+uint32_t Reader::find_character(const flatbuffers::String& name, const Place& at) {
   const auto found = character_index_.find(name.str());
   if (found == character_index_.end()) {
     fail(at, fmt::format("there is no character '{}' in the scene", read_text(&name, at)));

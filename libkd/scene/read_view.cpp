@@ -27,8 +27,8 @@ std::string no_field(LightKind kind, const char* field) {
 void Reader::read_camera(const scene_fb::Camera& source) {
   Camera& camera = scene_.camera;
   camera.interpolation = to_interpolation(source.interpolation());
-  camera.keys = read_keys<CameraKey>(source.keys(), "camera",
-                                     [](const scene_fb::CameraKey& k, const std::string&, CameraKey& key) {
+  camera.keys = read_keys<CameraKey>(source.keys(), Place{"camera"},
+                                     [](const scene_fb::CameraKey& k, const Place&, CameraKey& key) {
                                        if (k.position()) key.position = to_vec3d(*k.position());
                                        if (k.target()) key.target = to_vec3d(*k.target());
                                        if (k.up()) key.up = to_vec3d(*k.up());
@@ -58,7 +58,7 @@ void Reader::check_camera() {
   }
 }
 
-Light Reader::read_light(const scene_fb::Light& source, const std::string& at) {
+Light Reader::read_light(const scene_fb::Light& source, const Place& at) {
   Light light;
   if (!source.kind()) {
     fail(at, "the light lacks 'kind': \"point\", \"directional\" or \"spot\"");
@@ -71,21 +71,20 @@ Light Reader::read_light(const scene_fb::Light& source, const std::string& at) {
 }
 
 /// What keys may move.
-void Reader::read_light_motion(const scene_fb::Light& source, const std::string& at, Light& light) {
+void Reader::read_light_motion(const scene_fb::Light& source, const Place& at, Light& light) {
   const bool has_position = light.kind != LightKind::directional, has_direction = light.kind != LightKind::point;
-  const auto check = [&](const scene_fb::Vec3* position, const scene_fb::Vec3* direction, const std::string& where) {
+  const auto check = [&](const scene_fb::Vec3* position, const scene_fb::Vec3* direction, const Place& where) {
     if (position && !has_position) fail(where + ".position", no_field(light.kind, "position"));
     if (direction && !has_direction) fail(where + ".direction", no_field(light.kind, "direction"));
   };
   light.interpolation = to_interpolation(source.interpolation());
-  light.keys = read_keys<LightKey>(source.keys(), at,
-                                   [&](const scene_fb::LightKey& k, const std::string& at_key, LightKey& key) {
-                                     check(k.position(), k.direction(), at_key);
-                                     if (k.position()) key.position = to_vec3d(*k.position());
-                                     if (k.direction())
-                                       key.direction = read_direction(*k.direction(), at_key + ".direction");
-                                     if (k.colour()) key.colour = read_colour(k.colour(), {}, at_key + ".colour");
-                                   });
+  light.keys =
+      read_keys<LightKey>(source.keys(), at, [&](const scene_fb::LightKey& k, const Place& at_key, LightKey& key) {
+        check(k.position(), k.direction(), at_key);
+        if (k.position()) key.position = to_vec3d(*k.position());
+        if (k.direction()) key.direction = read_direction(*k.direction(), at_key + ".direction");
+        if (k.colour()) key.colour = read_colour(k.colour(), {}, at_key + ".colour");
+      });
   check(source.position(), source.direction(), at);
   const auto position = first_of(light.keys, &LightKey::position);
   const auto direction = first_of(light.keys, &LightKey::direction);
@@ -103,7 +102,7 @@ void Reader::read_light_motion(const scene_fb::Light& source, const std::string&
 }
 
 /// A spot light's cone, and what distance does.
-void Reader::read_light_shape(const scene_fb::Light& source, const std::string& at, Light& light) {
+void Reader::read_light_shape(const scene_fb::Light& source, const Place& at, Light& light) {
   const std::optional<double> inner = source.inner_angle(), outer = source.outer_angle(), reach = source.reach();
   if (light.kind == LightKind::spot) {
     if (!inner || !outer) fail(at, "a spot light needs an 'inner_angle' and an 'outer_angle'");
@@ -127,7 +126,7 @@ void Reader::read_light_shape(const scene_fb::Light& source, const std::string& 
   if (reach) fail(at + ".reach", no_field(light.kind, "reach"));
 }
 
-Vec3d Reader::read_direction(const scene_fb::Vec3& source, const std::string& at) {
+Vec3d Reader::read_direction(const scene_fb::Vec3& source, const Place& at) {
   const Vec3d direction = normalised(to_vec3d(source));
   if (direction == Vec3d{0, 0, 0}) fail(at, "the light's 'direction' must not be zero");
   return direction;

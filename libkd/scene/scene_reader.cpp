@@ -9,25 +9,38 @@ namespace kd::scene {
 
 bool fits_float(double v) { return v >= 0 && v <= double{std::numeric_limits<float>::max()}; }
 
+std::string Place::last() const {
+  const std::string_view plain = name.starts_with('.') ? name.substr(1) : name;
+  return index == kNoIndex ? std::string(plain) : fmt::format("{}[{}]", plain, index);
+}
+
+std::string Place::text() const {
+  if (!outer) return last();
+  return fmt::format("{}.{}", outer->text(), last());
+}
+
+Reader::Reader(std::string_view json, const std::string& path, const TableLines& lines)
+    : json_(json), path_(path), lines_(lines), folder_((std::filesystem::path(path).parent_path() / "").string()) {}
+
 Result<Scene> Reader::read(const scene_fb::Scene& source) {
   scene_.path = path_;
   if (source.film()) read_film(*source.film());
   read_camera(*source.camera());
-  scene_.background = read_colour(source.background(), scene_.background, "background");
-  scene_.ambient = read_colour(source.ambient(), scene_.ambient, "ambient");
+  scene_.background = read_colour(source.background(), scene_.background, Place{"background"});
+  scene_.ambient = read_colour(source.ambient(), scene_.ambient, Place{"ambient"});
   if (source.lights()) {
     for (const scene_fb::Light* light : *source.lights()) {
-      scene_.lights.push_back(read_light(*light, fmt::format("lights[{}]", scene_.lights.size())));
+      scene_.lights.push_back(read_light(*light, Place{"lights", nullptr, scene_.lights.size()}));
     }
   }
   for (const scene_fb::Object* object : *source.objects()) {
-    const std::string at = fmt::format("objects[{}]", scene_.objects.size());
+    const Place at{"objects", nullptr, scene_.objects.size()};
     scene_.objects.push_back(read_object(*object, at));
   }
   if (scene_.objects.empty()) fail("objects", "the scene has no objects: it needs at least one");
   name_characters(source);
   for (const scene_fb::Character* character : *source.characters()) {
-    const std::string at = fmt::format("characters[{}]", scene_.characters.size());
+    const Place at{"characters", nullptr, scene_.characters.size()};
     scene_.characters.push_back(read_character(*character, at));
   }
   if (scene_.characters.empty()) fail("characters", "the scene has no characters: it needs at least one");
@@ -49,11 +62,11 @@ void Reader::read_film(const scene_fb::Film& source) {
   }
 }
 
-SceneObject Reader::read_object(const scene_fb::Object& source, const std::string& at) {
+SceneObject Reader::read_object(const scene_fb::Object& source, const Place& at) {
   SceneObject object;
   object.name = read_name(*source.name(), at + ".name");
-  const std::filesystem::path file = read_name(*source.file(), at + ".file");
-  object.file = (std::filesystem::path(path_).parent_path() / file).string();
+  const std::string file = read_name(*source.file(), at + ".file");
+  object.file = file.starts_with('/') ? file : folder_ + file;
   const auto index = static_cast<uint32_t>(scene_.objects.size());
   if (!object_index_.emplace(object.name, index).second) {
     fail(at + ".name", fmt::format("there are two objects '{}': rename one", object.name));
@@ -61,7 +74,7 @@ SceneObject Reader::read_object(const scene_fb::Object& source, const std::strin
   return object;
 }
 
-Material Reader::read_material(const scene_fb::Material& source, const std::string& at) {
+Material Reader::read_material(const scene_fb::Material& source, const Place& at) {
   Material material;
   material.ambient = read_colour(source.ambient(), material.ambient, at + ".ambient");
   material.diffuse = read_colour(source.diffuse(), material.diffuse, at + ".diffuse");
@@ -75,7 +88,7 @@ Material Reader::read_material(const scene_fb::Material& source, const std::stri
   return material;
 }
 
-double Reader::read_frame(std::optional<double> source, std::optional<double> before, const std::string& at) {
+double Reader::read_frame(std::optional<double> source, std::optional<double> before, const Place& at) {
   if (!source) fail(at, "the key lacks 'frame'");
   const double frame = source.value_or(0);
   if (!(frame >= -kMaxKeyFrame && frame <= kMaxKeyFrame)) fail(at + ".frame", "'frame' must be from -1e9 to 1e9");
@@ -85,13 +98,13 @@ double Reader::read_frame(std::optional<double> source, std::optional<double> be
   return frame;
 }
 
-void Reader::exclude(const void* present, const char* name, const char* given, const std::string& at) {
+void Reader::exclude(const void* present, const char* name, const char* given, const Place& at) {
   if (!present) return;
-  fail(fmt::format("{}.{}", at, name), fmt::format("'{}' does not go with '{}': keep one of them", name, given));
+  fail(fmt::format("{}.{}", at.text(), name), fmt::format("'{}' does not go with '{}': keep one of them", name, given));
 }
 
 /// A string for people: error lines repeat it, so that it must stay on one.
-std::string Reader::read_text(const flatbuffers::String* source, const std::string& at) {
+std::string Reader::read_text(const flatbuffers::String* source, const Place& at) {
   if (!source) return {};
   for (const char c : source->string_view()) {
     if (static_cast<unsigned char>(c) < ' ' || c == 0x7f) fail(at, "a name must not hold control characters");
@@ -99,12 +112,12 @@ std::string Reader::read_text(const flatbuffers::String* source, const std::stri
   return source->str();
 }
 
-std::string Reader::read_name(const flatbuffers::String& source, const std::string& at) {
-  if (source.size() == 0) fail(at, fmt::format("'{}' must not be empty", at.substr(at.rfind('.') + 1)));
+std::string Reader::read_name(const flatbuffers::String& source, const Place& at) {
+  if (source.size() == 0) fail(at, fmt::format("'{}' must not be empty", at.last()));
   return read_text(&source, at);
 }
 
-Vec3f Reader::read_colour(const scene_fb::Vec3* source, Vec3f otherwise, const std::string& at) {
+Vec3f Reader::read_colour(const scene_fb::Vec3* source, Vec3f otherwise, const Place& at) {
   if (!source) return otherwise;
   if (!fits_float(source->x()) || !fits_float(source->y()) || !fits_float(source->z())) {
     fail(at, "the components of a colour must be from 0 to 3.4e38");

@@ -100,25 +100,18 @@ namespace {
 /// A set of files under any of their names.
 class Files {
  public:
-  bool contains(const std::string& path) const {
-    const auto is_known = [this](const std::string& identity) { return known_.contains(identity); };
-    const auto all = identities(path);
-    return std::any_of(all.begin(), all.end(), is_known);
-  }
-  void add(const std::string& path) {
-    for (std::string& identity : identities(path)) known_.insert(std::move(identity));
-  }
+  bool contains(const std::string& path) const { return known_.contains(identity(path)); }
+  void add(const std::string& path) { known_.insert(identity(path)); }
 
  private:
-  /// Where the name leads and, if there is a file, which it is: it may have several names.
-  static std::vector<std::string> identities(const std::string& path) {
-    std::error_code none;
-    // Of a name without a folder that is not there yet, weakly_canonical would make no whole path.
-    std::vector<std::string> all{
-        std::filesystem::weakly_canonical(std::filesystem::absolute(path, none), none).string()};
+  /// Which file it is, or where the name of one that is not there yet leads: finding that out takes a hundred times as
+  /// long, and a scene may list files by the thousand.
+  static std::string identity(const std::string& path) {
     struct stat status {};
-    if (::stat(path.c_str(), &status) == 0) all.push_back(fmt::format("{}:{}", status.st_dev, status.st_ino));
-    return all;
+    if (::stat(path.c_str(), &status) == 0) return fmt::format("{}:{}", status.st_dev, status.st_ino);
+    std::error_code none;
+    // Of a name without a folder, weakly_canonical would make no whole path.
+    return std::filesystem::weakly_canonical(std::filesystem::absolute(path, none), none).string();
   }
 
   std::set<std::string> known_;
