@@ -8,6 +8,7 @@
 #include "stress_report.h"
 #include "sys/parallel.h"
 #include "sys/timer.h"
+#include "triangle_test.h"
 
 namespace kd::bench {
 
@@ -15,7 +16,7 @@ namespace {
 
 struct Options {
   stress::StressSettings settings;
-  std::string device = "auto";
+  std::string device = "auto", test = "exact";
   unsigned threads = 0;
   std::string json;
   bool quiet = false;
@@ -27,15 +28,21 @@ Result<stress::Tally> stress_all(const Options& o) {
   if (auto usable = tools::check_outputs({o.json}, o.settings.files); !usable) return usable.error();
   auto device = render::choose_device(o.device);
   if (!device) return device.error();
+  auto test = triangle_test_named(o.test);
+  if (!test) return test.error();
   StressRun run;
   run.settings = o.settings;
+  run.settings.test = *test;
   run.device = device->description;
   if (device->backend->name == "cpu") run.threads = thread_count();
   const bool text = o.json != "-";
-  if (text) fmt::print("{} rays, seed {}, on {}\n\n", o.settings.rays, o.settings.seed, device->description);
+  if (text) {
+    fmt::print("{} rays, seed {}, triangle test: {}, on {}\n\n", o.settings.rays, o.settings.seed, o.test,
+               device->description);
+  }
 
   Timer timer;
-  auto rows = run_stress(o.settings, *device, tools::progress_bar("stress", o.quiet));
+  auto rows = run_stress(run.settings, *device, tools::progress_bar("stress", o.quiet));
   if (!rows) return rows.error();
   run.rows = std::move(*rows);
   run.seconds = timer.seconds();
@@ -66,6 +73,9 @@ Command stress_command(CLI::App& app) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->check(tools::whole_number(stress::kStressBits.front(), kMaxLatticeBits))
+      ->capture_default_str();
+  c->add_option("--triangle-test", o->test,
+                triangle_test_names() + ", the last two in float32, as baselines: they fail")
       ->capture_default_str();
   c->add_option("--seed", s.seed, "Of the random numbers")->capture_default_str();
   c->add_option("--first", s.first, "Number of the first ray of every class and mesh: to trace a ray again")

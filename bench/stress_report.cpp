@@ -9,6 +9,7 @@
 #include "embree_build.h"
 #include "machine.h"
 #include "table.h"
+#include "triangle_test.h"
 
 namespace kd::bench {
 
@@ -160,9 +161,11 @@ Json displacement_json(const StressRun& run) {
 /// A command line that traces one ray again.
 std::string replay(const StressRun& run, const StressRow& row, const stress::Failure& f) {
   const bool ours = row.mesh.find('.') == std::string::npos;
-  return fmt::format("kdbench stress {} --bits {} --class {} --seed {} --first {} --rays 1 --device cpu",
+  const bool exact = run.settings.test == render::TriangleTest::exact;
+  return fmt::format("kdbench stress {} --bits {} --class {}{} --seed {} --first {} --rays 1 --device cpu",
                      ours ? "--mesh " + row.mesh : row.mesh + " --mesh none", row.bits, class_name(row.ray_class),
-                     run.settings.seed, f.index);
+                     exact ? "" : fmt::format(" --triangle-test {}", name_of(run.settings.test)), run.settings.seed,
+                     f.index);
 }
 
 void print_failures(const StressRun& run) {
@@ -222,6 +225,7 @@ Json stress_json(const StressRun& run) {
   j["machine"] = {{"processor", machine.processor}, {"cores", machine.cores}, {"compiler", machine.compiler}};
   if (run.threads > 0) j["threads"] = run.threads;
   if (const auto embree = embree_version(); peers && embree) j["embree_version"] = *embree;
+  j["triangle_test"] = name_of(run.settings.test);
   j["seed"] = run.settings.seed;
   j["seconds"] = run.seconds;
   j.update(counts_json(total_of(run), peers));

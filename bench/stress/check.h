@@ -1,4 +1,5 @@
-// One ray, traced by the product and judged by the oracle; one implementation for every device.
+// One ray, traced by the product, or with a triangle test in place of its own, and judged by the oracle; one
+// implementation for every device.
 //
 // What is demanded of a ray, beyond what its class demands (rays.h):
 //   - that it passes through the cube is not overlooked; it moves no further than core/lattice_ray.h allows;
@@ -16,24 +17,45 @@
 
 namespace kd::stress {
 
-/// The product: what is under test.
-struct ProductTracer {
+/// What is under test: the traversal, with a triangle test. Every test gets the ray as snapped, which float32 holds
+/// exactly, so that each is judged on the very ray that it was given.
+template <class Test>
+struct TestTracer {
+  static constexpr bool kExact = Test::kExact;
+
   template <class Counter>
   KD_HD static uint32_t closest(const CaseView& c, const LatticeRay& ray, uint32_t excluded, Counter& counter) {
-    return traverse<RayMode::closest>(c.object, ray, ray.s_max, excluded, counter);
+    return traverse<RayMode::closest, Test>(c.object, ray, ray.s_max, excluded, counter);
   }
   KD_HD static uint32_t any(const CaseView& c, const LatticeRay& ray, uint32_t excluded) {
     NoCounter counter;
-    return traverse<RayMode::any>(c.object, ray, ray.s_max, excluded, counter);
+    return traverse<RayMode::any, Test>(c.object, ray, ray.s_max, excluded, counter);
   }
   KD_HD static bool meets(const CaseView& c, const LatticeRay& ray, uint32_t triangle, TriangleHit& hit) {
-    return intersect_triangle(ray, c.object.triangles[triangle], hit);
+    const Test test{ray};
+    NoCounter counter;
+    typename Test::Distance s;
+    if (!test.template meets<RayMode::any>(c.object.triangles[triangle], kAnyDistance, s, counter)) return false;
+    const auto found = test.locate(c.object.triangles[triangle]);
+    hit = {found.s, found.u, found.v};
+    return true;
   }
+
+ private:
+  static constexpr float kAnyDistance = 1e30f;
 };
 
-/// Of intersect_triangle's distance, in 2^-53 of the farthest vertex's, and of its weights, in 2^-53. The product's
+/// The product.
+using ProductTracer = TestTracer<ExactTest>;
+
+/// Of a hit's distance, in roundings of the farthest vertex's, and of its weights, in roundings of 1. The product's
 /// bound is 8 (tests/core/test_triangle.cpp); the oracle's own divisions add up to 4.
 constexpr double kRoundings = 12;
+
+/// The unit roundoff of a tracer's distances. Those of the float32 tests have no bound and are not judged; but where
+/// so many roundings cannot tell which of two triangles is the nearer, they may take either.
+template <class Tracer>
+constexpr double kRoundoff = Tracer::kExact ? 0x1p-53 : 0x1p-24;
 
 /// How far a snapped ray may lie from the true one, in grid steps an axis (core/lattice_ray.h): half a step where it
 /// starts, one where it leaves. At 24 bits a ray that enters the cube through a face along its axis starts up to half
@@ -75,8 +97,9 @@ struct Rank {
   KD_HD KD_INLINE bool maybe_within(const LatticeRay& ray) const { return s_most >= ray.s_min && s_least <= ray.s_max; }
 };
 
+template <class Tracer>
 KD_HD KD_INLINE Rank rank_of(const Crossing& crossing, uint32_t triangle) {
-  const double slack = kRoundings * 0x1p-53 * crossing.farthest;
+  const double slack = kRoundings * kRoundoff<Tracer> * crossing.farthest;
   const double later = crossing.touches ? 0x1p-46 * (3 * crossing.farthest + 1) : 0;
   return {crossing.s - slack, crossing.s + slack + later, triangle};
 }
@@ -88,14 +111,16 @@ struct Survey {
   bool ambiguous = false;  // a crossing may or may not count
   bool ties = false;
   uint64_t decided = 0;
-  uint64_t met = 0;  // by the product's triangle test, counting ones
+  uint64_t met = 0;  // by the triangle test under test, counting ones
   Fault fault = Fault::none;
 };
 
-KD_HD inline Fault judge_test(const Crossing& exact, bool met, const TriangleHit& hit) {
+template <class Tracer>
+KD_HD Fault judge_test(const Crossing& exact, bool met, const TriangleHit& hit) {
   if (!exact.met) return met ? Fault::test_doubled : Fault::none;
   if (!met) return exact.behind ? Fault::none : Fault::test_missed;  // what lies behind the ray may be left out
-  const double slack = kRoundings * 0x1p-53;
+  if (!Tracer::kExact) return Fault::none;
+  const double slack = kRoundings * kRoundoff<Tracer>;
   const bool good = std::fabs(hit.s - exact.s) <= slack * exact.farthest && std::fabs(hit.u - exact.v) <= slack &&
                     std::fabs(hit.v - exact.w) <= slack;
   return good ? Fault::none : Fault::test_off;
@@ -162,9 +187,9 @@ KD_HD Survey survey(const CaseView& c, const LatticeRay& ray, const ExactRay& ex
     TriangleHit hit{};
     const bool met = Tracer::meets(c, ray, triangle.index, hit);
     ++out.decided;
-    if (out.fault == Fault::none) out.fault = judge_test(crossing, met, hit);
+    if (out.fault == Fault::none) out.fault = judge_test<Tracer>(crossing, met, hit);
     if (!crossing.met || triangle.index == excluded) return;
-    const Rank rank = rank_of(crossing, triangle.index);
+    const Rank rank = rank_of<Tracer>(crossing, triangle.index);
     if (!rank.maybe_within(ray)) return;
     out.possible = true;
     out.ties = out.ties || crossing.touches;
@@ -180,11 +205,11 @@ KD_HD Survey survey(const CaseView& c, const LatticeRay& ray, const ExactRay& ex
 }
 
 /// Whether the ray crosses the triangle where it counts, and at which distance at the least.
-KD_HD inline bool may_be_met(const CaseView& c, const LatticeRay& ray, const ExactRay& exact, uint32_t triangle,
-                             Rank& rank) {
+template <class Tracer>
+KD_HD bool may_be_met(const CaseView& c, const LatticeRay& ray, const ExactRay& exact, uint32_t triangle, Rank& rank) {
   const Crossing crossing = cross_triangle(exact, c.oracle.triangle(triangle));
   if (!crossing.met) return false;
-  rank = rank_of(crossing, triangle);
+  rank = rank_of<Tracer>(crossing, triangle);
   return rank.maybe_within(ray);
 }
 
@@ -195,23 +220,25 @@ struct Answers {
   uint32_t any_other = kNoTriangle;  // but for `closest`
 };
 
-KD_HD inline Fault judge_answers(const CaseView& c, const LatticeRay& ray, const ExactRay& exact, uint32_t excluded,
-                                 const Survey& s, const Answers& a) {
+template <class Tracer>
+KD_HD Fault judge_answers(const CaseView& c, const LatticeRay& ray, const ExactRay& exact, uint32_t excluded,
+                          const Survey& s, const Answers& a) {
   Rank rank;
   if (a.closest == kNoTriangle) {
     if (s.first.triangle != kNoTriangle) return Fault::closest_none;
   } else {
-    if (a.closest == excluded || !may_be_met(c, ray, exact, a.closest, rank)) return Fault::closest_off;
+    if (a.closest == excluded || !may_be_met<Tracer>(c, ray, exact, a.closest, rank)) return Fault::closest_off;
     if (s.first.before(rank)) return Fault::closest_far;
   }
   if (a.any == kNoTriangle) {
     if (s.first.triangle != kNoTriangle) return Fault::any_none;
-  } else if (a.any == excluded || !may_be_met(c, ray, exact, a.any, rank)) {
+  } else if (a.any == excluded || !may_be_met<Tracer>(c, ray, exact, a.any, rank)) {
     return Fault::any_off;
   }
   if (excluded != kNoTriangle || a.closest == kNoTriangle) return Fault::none;
   if (a.any_other == kNoTriangle) return s.second.triangle != kNoTriangle ? Fault::any_none : Fault::none;
-  return a.any_other == a.closest || !may_be_met(c, ray, exact, a.any_other, rank) ? Fault::any_off : Fault::none;
+  return a.any_other == a.closest || !may_be_met<Tracer>(c, ray, exact, a.any_other, rank) ? Fault::any_off
+                                                                                           : Fault::none;
 }
 
 KD_HD inline Fault judge_demand(const CaseView& c, const Query& q, const Survey& s, const Answers& a) {
@@ -259,7 +286,7 @@ KD_HD Fault check_traced(const CaseView& c, const Query& q, bool plainly, Verdic
   if (displaced != Fault::none) return displaced;
   if (s.fault != Fault::none) return s.fault;
   if (const Fault fault = judge_demand(c, q, s, answers); fault != Fault::none) return fault;
-  return judge_answers(c, ray, exact, q.excluded, s, answers);
+  return judge_answers<Tracer>(c, ray, exact, q.excluded, s, answers);
 }
 
 }  // namespace detail

@@ -219,7 +219,8 @@ Result<std::vector<StressRow>> run_stress(const StressSettings& settings, const 
       const uint64_t share = dealer.deal(source.weight / static_cast<double>(source.classes.size()));
       const uint64_t rays = share + fixed_rays(settings, source, ray_class);
       if (rays == 0) continue;
-      const Job job{ray_class, seed_of(settings, source, ray_class), settings.first, rays, plain_every(*stress_case)};
+      const Job job{ray_class,    seed_of(settings, source, ray_class), settings.first, rays, plain_every(*stress_case),
+                    settings.test};
       auto row = run_row(*runner, job,
                          {source.mesh(), source.bits, ray_class, stress_case->triangles.size(), 0, {}, {}}, advance);
       if (!row) return row.error();

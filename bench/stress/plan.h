@@ -32,6 +32,7 @@ struct StressSettings {
   std::vector<std::string> meshes;   // of those made here; empty: all, "none": none
   std::vector<std::string> files;
   std::vector<int> bits{kStressBits.begin(), kStressBits.end()};  // kStressBits.front() to kMaxLatticeBits
+  render::TriangleTest test = render::TriangleTest::exact;
 };
 
 /// What came of one class at one mesh at one number of bits.

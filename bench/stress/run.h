@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "render/backend.h"
+#include "render/trace.h"
 #include "stress/check.h"
 #include "stress/stress_case.h"
 
@@ -18,6 +19,7 @@ struct Job {
   uint64_t first = 0;  // of the rays' numbers
   uint64_t rays = 0;
   uint32_t plain_every = 0;  // of so many warps of 32 rays, one whose oracle leaves out no triangle; 0: none
+  render::TriangleTest test = render::TriangleTest::exact;
 };
 
 /// Whether a ray of a job is one of those.

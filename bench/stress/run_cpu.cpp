@@ -11,9 +11,8 @@ namespace {
 
 constexpr size_t kRayGrain = 32;
 
-}  // namespace
-
-JobResult run_on_cpu(const StressCase& stress_case, const Job& job, const Peer* peer) {
+template <class Test>
+JobResult run_test(const StressCase& stress_case, const Job& job, const Peer* peer) {
   const HostCase host(stress_case);
   const CaseView& view = host.view();
   JobResult out;
@@ -25,7 +24,7 @@ JobResult run_on_cpu(const StressCase& stress_case, const Job& job, const Peer* 
     for (size_t i = begin; i < end; ++i) {
       const uint64_t index = job.first + i;
       const Query query = make_query(view, job.ray_class, job.seed, index);
-      const Verdict verdict = check_query(view, query, is_plain(job, index), tally);
+      const Verdict verdict = check_query<TestTracer<Test>>(view, query, is_plain(job, index), tally);
       if (peer && verdict.traced && query.excluded == kNoTriangle) peer->trace(verdict, tally);
       if (verdict.fault == Fault::none) continue;
       const std::scoped_lock lock(mutex);
@@ -38,6 +37,12 @@ JobResult run_on_cpu(const StressCase& stress_case, const Job& job, const Peer* 
   std::sort(out.failures.begin(), out.failures.end(), by_index);
   out.failures.resize(std::min<size_t>(out.failures.size(), kMostFailures));
   return out;
+}
+
+}  // namespace
+
+JobResult run_on_cpu(const StressCase& stress_case, const Job& job, const Peer* peer) {
+  return render::with_test(job.test, [&]<class Test>() { return run_test<Test>(stress_case, job, peer); });
 }
 
 }  // namespace kd::stress

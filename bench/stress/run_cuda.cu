@@ -43,13 +43,14 @@ __device__ void add_to(DeviceTally& total, const Tally& tally) {
   }
 }
 
+template <class Test>
 __global__ void __launch_bounds__(kBlock) stress_kernel(CaseView view, Job job, DeviceTally* total) {
   Tally tally;
   const uint64_t stride = uint64_t{gridDim.x} * blockDim.x;
   for (uint64_t i = uint64_t{blockIdx.x} * blockDim.x + threadIdx.x; i < job.rays; i += stride) {
     const uint64_t index = job.first + i;
     const Query query = make_query(view, job.ray_class, job.seed, index);
-    const Verdict verdict = check_query(view, query, is_plain(job, index), tally);
+    const Verdict verdict = check_query<TestTracer<Test>>(view, query, is_plain(job, index), tally);
     if (verdict.fault == Fault::none) continue;
     const unsigned long long place = atomicAdd(&total->failed, 1ull);
     if (place < kMostFailures) total->failures[place] = {index, verdict.fault};
@@ -122,7 +123,8 @@ Result<JobResult> CudaCase::run(const Job& job) const {
   KD_CUDA_TRY(cudaMemset(state_->tally, 0, sizeof(DeviceTally)), action);
   const uint64_t wanted = (job.rays + kBlock * kRaysPerThread - 1) / (kBlock * kRaysPerThread);
   const auto blocks = static_cast<unsigned>(std::clamp<uint64_t>(wanted, 1, kMostBlocks));
-  stress_kernel<<<blocks, kBlock>>>(state_->view, job, state_->tally);
+  render::with_test(job.test,
+                    [&]<class Test>() { stress_kernel<Test><<<blocks, kBlock>>>(state_->view, job, state_->tally); });
   KD_CUDA_TRY(cudaGetLastError(), action);
   DeviceTally total;
   KD_CUDA_TRY(cudaMemcpy(&total, state_->tally, sizeof(total), cudaMemcpyDeviceToHost), action);

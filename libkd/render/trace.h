@@ -64,24 +64,29 @@ struct TraceJob {
   TriangleLayout layout = TriangleLayout::expanded;
 };
 
+/// Calls visit.operator()<Test>() for a triangle test.
+template <class Visit>
+auto with_test(TriangleTest test, Visit&& visit) {
+  switch (test) {
+    case TriangleTest::moller_trumbore:
+      return visit.template operator()<MollerTrumboreTest>();
+    case TriangleTest::woop:
+      return visit.template operator()<WoopTest>();
+    default:
+      return visit.template operator()<ExactTest>();
+  }
+}
+
 /// Calls visit.operator()<mode, Test>() for the kernel that a job asks for, in either layout.
 template <class Visit>
 void with_kernel(const TraceJob& job, Visit&& visit) {
-  const auto with_mode = [&]<class Test>() {
+  with_test(job.test, [&]<class Test>() {
     if (job.mode == RayMode::closest) {
       visit.template operator()<RayMode::closest, Test>();
     } else {
       visit.template operator()<RayMode::any, Test>();
     }
-  };
-  switch (job.test) {
-    case TriangleTest::exact:
-      return with_mode.template operator()<ExactTest>();
-    case TriangleTest::moller_trumbore:
-      return with_mode.template operator()<MollerTrumboreTest>();
-    case TriangleTest::woop:
-      return with_mode.template operator()<WoopTest>();
-  }
+  });
 }
 
 struct StepCounts {

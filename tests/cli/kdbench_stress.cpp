@@ -1,4 +1,7 @@
 // kdbench stress, from outside.
+#include <iterator>
+#include <sstream>
+
 #include <doctest/doctest.h>
 
 #include "cli/json_schema.h"
@@ -28,6 +31,7 @@ TEST_SUITE("kdbench stress") {
     const auto report = nlohmann::json::parse(t.read("r.json"));
     check_report("kdbench-stress", report);
     CHECK(report["rays"] == 9000);
+    CHECK(report["triangle_test"] == "exact");
     for (const char* key : {"misses", "double_counts", "mismatches"}) CHECK(report[key] == 0);
     for (const char* groups : {"classes", "bits", "meshes"}) {
       for (const char* key : {"rays", "hits", "ties", "triangle_tests"})
@@ -61,6 +65,35 @@ TEST_SUITE("kdbench stress") {
     CHECK(run("1") == run("2"));
   }
 
+  TEST_CASE("a triangle test that leaks: exit status 1, and what failed in the report, to be traced again") {
+    const Terminal t;
+    for (const char* test : {"moller-trumbore", "woop"}) {
+      const ToolRun run = t.run(kTool, {"stress", "--rays", "4000", "--mesh", "small-ball", "--bits", "21", "--device",
+                                        "cpu", "--quiet", "--triangle-test", test, "--json", "r.json"});
+      CHECK(run.status == 1);
+      CHECK(run.err.empty());
+      const auto report = nlohmann::json::parse(t.read("r.json"));
+      check_report("kdbench-stress", report);
+      CHECK(report["triangle_test"] == test);
+      CHECK(report["rays"] == 4000);
+      CHECK(report["double_counts"] > 100);
+      for (const char* key : {"misses", "double_counts", "mismatches"})
+        CHECK(sum(report["classes"], key) == report[key].get<uint64_t>());
+      REQUIRE(!report["failures"].empty());
+      const auto replay = report["failures"][0]["replay"].get<std::string>();
+      CHECK_MESSAGE(run.out.find(replay) != std::string::npos, replay);
+      CHECK(replay.find(std::string("--triangle-test ") + test) != std::string::npos);
+
+      std::istringstream words(replay);
+      Arguments again{std::istream_iterator<std::string>(words), {}};
+      again.erase(again.begin());  // kdbench
+      const ToolRun one = t.run(kTool, joined(again, {"--quiet"}));
+      CHECK(one.status == 1);
+      CHECK(one.out.find("\n1 rays, ") != std::string::npos);
+      CHECK(one.out.find(replay) != std::string::npos);
+    }
+  }
+
   TEST_CASE("only what is named, and one ray of it") {
     const Terminal t;
     const auto report =
@@ -82,6 +115,7 @@ TEST_SUITE("kdbench stress") {
     fails({"--mesh", "teapot"}, ErrorClass::usage, {"--mesh teapot", "ball", "offset-ball"});
     fails({"--mesh", "none"}, ErrorClass::usage, {"no mesh"});
     fails({"--mesh", "needles", "--class", "inside"}, ErrorClass::usage, {"no mesh"});
+    fails({"--triangle-test", "plucker"}, ErrorClass::usage, {"--triangle-test plucker", "exact, moller-trumbore"});
     fails({"--bits", "9"}, ErrorClass::usage, {"--bits"});
     fails({"--bits", "21,25"}, ErrorClass::usage, {"--bits"});
     fails({"--device", "nonsense"}, ErrorClass::usage, {"--device nonsense"});
@@ -97,7 +131,7 @@ TEST_SUITE("kdbench stress") {
     const Terminal t;
     const std::string help = t.succeeds(kTool, {"stress", "--help"}).out;
     for (const char* option : {"meshes", "--rays", "--device", "--class", "--mesh", "--bits", "--seed", "--first",
-                               "--threads", "--json", "--quiet"}) {
+                               "--threads", "--triangle-test", "--json", "--quiet"}) {
       CHECK_MESSAGE(help.find(option) != std::string::npos, option);
     }
   }

@@ -17,6 +17,7 @@ namespace {
 /// decisions are judged.
 template <class Test>
 struct PlainTracer {
+  static constexpr bool kExact = true;  // of distances
   static bool meets(const CaseView& c, const LatticeRay& ray, uint32_t triangle, TriangleHit& hit) {
     const TriangleVertices& t = c.object.triangles[triangle];
     if (!Test::inside(ray, t)) return false;

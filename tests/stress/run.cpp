@@ -92,6 +92,9 @@ TEST_CASE("stress: the same rays and the same counts for any number of threads, 
   StressSettings settings;
   settings.rays = 60'000;
   settings.bits = {10, 21};
+  SUBCASE("exact") {}
+  SUBCASE("Woop") { settings.test = render::TriangleTest::woop; }
+  SUBCASE("Möller-Trumbore") { settings.test = render::TriangleTest::moller_trumbore; }
   const auto two = run(settings);
   const auto same = [&](const std::vector<StressRow>& other) {
     REQUIRE(other.size() == two.size());
