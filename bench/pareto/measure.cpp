@@ -8,7 +8,7 @@
 
 #include "kdbuild/build_source.h"
 #include "mesh/clean.h"
-#include "mesh/normalise.h"
+#include "mesh/lattice_fit.h"
 #include "mesh/read_mesh.h"
 #include "pareto/flip.h"
 #include "triangle_test.h"

@@ -1,7 +1,7 @@
-// The lattice: the fixed-point grid on which an object's vertices and split planes lie. The object's bounding box is
-// the unit cube; a coordinate is an integer q in [0, 2^B - 1], B <= 24, and stands for the model coordinate
-// origin + q * step, step = extent / (2^B - 1). With B <= 24 a coordinate, and a difference of two, is exact in
-// float32.
+// The lattice: the fixed-point grid on which an object's vertices and split planes lie. The object's box, as tight as
+// mesh/lattice_fit.h makes it, is the unit cube; a coordinate is an integer q in [0, 2^B - 1], B <= 24, and stands for
+// the model coordinate origin + q * step, step = extent / (2^B - 1). With B <= 24 a coordinate, and a difference of
+// two, is exact in float32.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@ constexpr int kDefaultLatticeBits = 21;  // 3 x 21 bits fill one 64-bit word
 KD_HD KD_INLINE constexpr uint32_t lattice_max(int bits) { return (1u << bits) - 1u; }
 
 struct Lattice {
-  Vec3d origin{0, 0, 0};  // model space: the bounding box's low corner
+  Vec3d origin{0, 0, 0};  // model space: the box's low corner
   Vec3d extent{0, 0, 0};  // model space: the box's edges, each >= 0; 0 on the axis a flat mesh lacks
   int bits = kDefaultLatticeBits;
 

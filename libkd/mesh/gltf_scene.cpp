@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "core/box.h"
-#include "mesh/normalise.h"
+#include "mesh/lattice_fit.h"
 
 namespace kd::mesh {
 namespace {

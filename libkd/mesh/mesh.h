@@ -15,6 +15,7 @@ constexpr uint32_t kNoIndex = 0xffffffffu;
 
 struct Mesh {
   std::vector<Vec3d> positions;                    // model space
+  std::vector<Vec3u> lattice_points;               // per position, once mesh/lattice_fit.h has placed them; else empty
   std::vector<std::array<uint32_t, 3>> triangles;  // indices into positions
   std::vector<uint32_t> source_primitives;         // per triangle: its number in the source, polygons fanned, from 0
   std::vector<Vec3f> normals;                      // length 1; empty if the source has none

@@ -1,15 +1,15 @@
 #include "mesh/normalise.h"
 
-#include <algorithm>
 #include <bit>
 #include <cmath>
+#include <span>
 #include <unordered_map>
+
+#include "mesh/lattice_fit.h"
 
 namespace kd::mesh {
 
 namespace {
-
-double displacement(const Lattice& lattice, Vec3d p_model, Vec3u q) { return length(lattice.to_model(q) - p_model); }
 
 /// A vertex as it is stored, and as the tree sees it. What is stored is exact in float32 in either form, and kept so:
 /// of doubles that were rounded to float32 and back, g++ 12's vectoriser leaves out the rounding.
@@ -19,11 +19,9 @@ struct Corner {
   Vec3u key;  // equal for vertices that are stored alike
 };
 
-Corner corner_of(const Lattice& lattice, Vec3d p_model, VertexForm form) {
-  if (form == VertexForm::lattice) {
-    const Vec3u point = lattice.to_lattice(p_model);
-    return {vec_cast<float>(point), point, point};
-  }
+Corner lattice_corner(Vec3u point) { return {vec_cast<float>(point), point, point}; }
+
+Corner float_corner(const Lattice& lattice, Vec3d p_model) {
   const auto bits = [](float v) { return std::bit_cast<uint32_t>(v); };
   // Adding 0 turns -0, which a coordinate of -0 in a box from +0 gives, into 0.
   const Vec3f f = vec_cast<float>(lattice.to_lattice_space(p_model) + Vec3d{0, 0, 0});
@@ -65,24 +63,17 @@ class VertexTable {
   std::unordered_map<Key, uint32_t, Hash> index_of_;
 };
 
-}  // namespace
-
-Box3d bounds(const Mesh& mesh) {
-  Box3d box_model;
-  for (const auto& triangle : mesh.triangles) {
-    for (uint32_t v : triangle) box_model.extend(mesh.positions[v]);
-  }
-  return box_model;
-}
-
-LatticeMesh normalise(const Mesh& mesh, int bits) { return normalise(mesh, bits, bounds(mesh)); }
-
-LatticeMesh normalise(const Mesh& mesh, int bits, const Box3d& box_model, VertexForm form) {
+/// `points`: per position, or empty.
+LatticeMesh normalise_placed(const Mesh& mesh, std::span<const Vec3u> points, const Lattice& lattice, VertexForm form) {
   LatticeMesh out;
-  out.lattice = {box_model.lo, box_model.extent(), bits};
+  out.lattice = lattice;
   out.triangles.reserve(mesh.triangles.size());
   out.kept.reserve(mesh.triangles.size());
 
+  const auto corner_of = [&](uint32_t v) {
+    if (form == VertexForm::float32) return float_corner(lattice, mesh.positions[v]);
+    return lattice_corner(points.empty() ? lattice.to_lattice(mesh.positions[v]) : points[v]);
+  };
   std::vector<uint32_t> new_index(mesh.positions.size(), kNoIndex);
   VertexTable table(mesh.positions.size());
   const auto moved = [&](const Corner& corner, Vec3d p_model) {
@@ -94,7 +85,7 @@ LatticeMesh normalise(const Mesh& mesh, int bits, const Box3d& box_model, Vertex
   uint64_t used = 0;
   for (uint32_t i = 0; i < mesh.triangles.size(); ++i) {
     std::array<Corner, 3> corners;
-    for (size_t k = 0; k < 3; ++k) corners[k] = corner_of(out.lattice, mesh.positions[mesh.triangles[i][k]], form);
+    for (size_t k = 0; k < 3; ++k) corners[k] = corner_of(mesh.triangles[i][k]);
     if (!has_area(corners[0].point, corners[1].point, corners[2].point)) {
       if (out.collapsed_triangles++ == 0) out.first_collapsed = mesh.source_primitives[i];
       for (size_t k = 0; k < 3; ++k) moved(corners[k], mesh.positions[mesh.triangles[i][k]]);
@@ -124,25 +115,17 @@ LatticeMesh normalise(const Mesh& mesh, int bits, const Box3d& box_model, Vertex
   return out;
 }
 
-double max_displacement(const Mesh& mesh, const Lattice& lattice, double enough) {
-  double largest = 0;
-  for (const auto& triangle : mesh.triangles) {
-    for (uint32_t v : triangle) {
-      const Vec3d p_model = mesh.positions[v];
-      largest = std::fmax(largest, displacement(lattice, p_model, lattice.to_lattice(p_model)));
-    }
-    if (largest > enough) break;
-  }
-  return largest;
+}  // namespace
+
+LatticeMesh normalise(const Mesh& mesh, int bits) {
+  const Mesh* const meshes[] = {&mesh};
+  const LatticeFit fit(meshes);
+  const Lattice lattice = fit.lattice(bits);
+  return normalise_placed(mesh, fit.place(0, lattice), lattice, VertexForm::lattice);
 }
 
-std::optional<int> fewest_bits(std::span<const Mesh* const> meshes, const Box3d& box, double allowed) {
-  for (int bits = kFewestUsefulBits; bits <= kMaxLatticeBits; ++bits) {
-    const Lattice lattice{box.lo, box.extent(), bits};
-    const auto keeps = [&](const Mesh* mesh) { return max_displacement(*mesh, lattice, allowed) <= allowed; };
-    if (std::all_of(meshes.begin(), meshes.end(), keeps)) return bits;
-  }
-  return std::nullopt;
+LatticeMesh normalise(const Mesh& mesh, const Lattice& lattice, VertexForm form) {
+  return normalise_placed(mesh, mesh.lattice_points, lattice, form);
 }
 
 }  // namespace kd::mesh

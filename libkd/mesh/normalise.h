@@ -1,14 +1,10 @@
-// Normalising: a mesh's bounding box becomes the unit cube, its vertices points of the lattice.
+// Normalising: a mesh's box becomes the unit cube, its vertices points of the lattice.
 #pragma once
 
 #include <array>
 #include <cstdint>
-#include <limits>
-#include <optional>
-#include <span>
 #include <vector>
 
-#include "core/box.h"
 #include "core/lattice.h"
 #include "core/object_view.h"
 #include "mesh/mesh.h"
@@ -30,32 +26,18 @@ struct LatticeMesh {
   uint32_t first_collapsed = kNoIndex;  // source primitive of the first of them
 };
 
-/// Model space: around the corners of the mesh's triangles.
-Box3d bounds(const Mesh& mesh);
-
-/// `mesh` is clean: finite, with at least one triangle. Its bounding box may be flat along one axis or more.
+/// On a lattice of its own, its vertices placed there (mesh/lattice_fit.h). `mesh` is clean: finite, with at least one
+/// triangle. Its bounding box may be flat along one axis or more.
 LatticeMesh normalise(const Mesh& mesh, int bits);
 
-/// The same in a given box of model space, in which all of `mesh` lies. Parts of a mesh that are normalised in one box
-/// lie on one lattice: vertices that they share stay shared, so that no seam opens between them.
+/// On a given lattice, in whose box all of `mesh` lies. A vertex goes to its lattice point, or if the mesh has none
+/// yet, to the nearest one. Vertices that parts of a mesh share stay shared if they were placed together, or not at
+/// all.
 ///
-/// In the float32 form, `bits` is kMaxLatticeBits. A vertex is rounded to float32, which is what displacements measure
-/// and welding compares, and from there to the lattice, which is where the tree sees it and triangles collapse: at most
-/// 3/4 of a step from where it was, and not always the point that one rounding would have given.
-LatticeMesh normalise(const Mesh& mesh, int bits, const Box3d& box_model, VertexForm form = VertexForm::lattice);
-
-/// What `normalise` would give as LatticeMesh::max_displacement on `lattice`, at a fraction of the cost. Stops at the
-/// first displacement above `enough` and returns that.
-double max_displacement(const Mesh& mesh, const Lattice& lattice,
-                        double enough = std::numeric_limits<double>::infinity());
-
-/// Fewer bits than this are not worth looking for: four bytes a vertex.
-constexpr int kFewestUsefulBits = 10;
-
-/// The fewest bits, from kFewestUsefulBits on, with which no vertex of these meshes, all on one lattice over `box`,
-/// moves further than `allowed` (model units); nothing if kMaxLatticeBits do not keep it. More bits may move a vertex
-/// further (one that fewer happened to hit), so every number of bits is tried in turn; those that are too few are found
-/// out after a vertex or two.
-std::optional<int> fewest_bits(std::span<const Mesh* const> meshes, const Box3d& box, double allowed);
+/// In the float32 form, the lattice has kMaxLatticeBits bits, and points do not count. A vertex is rounded to float32,
+/// which is what displacements measure and welding compares, and from there to the lattice, which is where the tree
+/// sees it and triangles collapse: at most 3/4 of a step from where it was, and not always the point that one rounding
+/// would have given.
+LatticeMesh normalise(const Mesh& mesh, const Lattice& lattice, VertexForm form = VertexForm::lattice);
 
 }  // namespace kd::mesh

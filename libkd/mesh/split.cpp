@@ -47,7 +47,10 @@ class Extractor {
   void append(Mesh& part, uint32_t t) {
     std::array<uint32_t, 3> corners;
     for (size_t k = 0; k < 3; ++k) {
-      corners[k] = renumbered(source_.triangles[t][k], new_position_, source_.positions, part.positions);
+      const uint32_t v = source_.triangles[t][k];
+      corners[k] = renumbered(v, new_position_, source_.positions, part.positions);
+      const bool is_new = part.lattice_points.size() < part.positions.size();
+      if (is_new && !source_.lattice_points.empty()) part.lattice_points.push_back(source_.lattice_points[v]);
     }
     part.triangles.push_back(corners);
     part.source_primitives.push_back(source_.source_primitives[t]);

@@ -1,6 +1,7 @@
 // Splitting: a mesh becomes several, each with only the vertices, normals and materials that its own triangles use.
 // Triangles keep their order and their source_primitives, vertices stand in order of first use, groups are not kept and
-// warnings stay with the whole. What is split stays on one lattice if it is normalised in the box of the whole.
+// warnings stay with the whole. What is split once its vertices have lattice points stays on one lattice, without
+// seams.
 #pragma once
 
 #include <string>

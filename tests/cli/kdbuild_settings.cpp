@@ -10,6 +10,7 @@
 #include "cli/run_tool.h"
 #include "kdbuild/build_source.h"
 #include "kdbuild/estimate.h"
+#include "mesh/lattice_fit.h"
 #include "mesh/normalise.h"
 #include "mesh/read_mesh.h"
 #include "support/temp_folder.h"
@@ -48,10 +49,13 @@ TEST_SUITE("kdbuild build --max-error") {
       const auto report = t.report(kTool, {"build", mesh, "-o", "x.nkd", "--max-error", allowed, "--stats", "-"});
       check_report("kdbuild-stats", report);
       const double limit = std::stod(allowed);
-      int expected = 10;
-      while (error_of[expected] > limit) ++expected;
-      CHECK(report["lattice"]["bits"] == expected);
-      CHECK(report["error"]["max"] == error_of[expected]);
+      const int bits = report["lattice"]["bits"];
+      const double error = report["error"]["max"];
+      CHECK(error <= limit);
+      // Without a limit a vertex may go further, if its faces gain by it.
+      CHECK(error <= error_of[bits]);
+      if (bits > 10) CHECK(error_of[bits - 1] > limit);
+      CHECK(error_of[bits] <= 3 * limit);
       CHECK(report["error"]["allowed"] == limit);
     }
     const ToolRun text = t.succeeds(kTool, {"build", mesh, "-o", "x.nkd", "--max-error", "0.01"});
@@ -83,9 +87,9 @@ TEST_SUITE("kdbuild build --vertices") {
     CHECK(report["settings"] == "--bits 24 --vertices float32");
     CHECK(report["lattice"] == lattice["lattice"]);
     CHECK(report["mesh"] == lattice["mesh"]);
-    // Rounded twice, a coordinate may come to lie a step beside the one that is rounded once.
+    // Its vertices go to the nearest points.
     CHECK(report["tree"]["sah_cost"].get<double>() ==
-          doctest::Approx(lattice["tree"]["sah_cost"].get<double>()).epsilon(1e-6));
+          doctest::Approx(lattice["tree"]["sah_cost"].get<double>()).epsilon(1e-2));
     CHECK(report["error"]["max"] > 0);
     CHECK(report["error"]["max"] <= lattice["error"]["max"]);
     CHECK(report["error"]["rms"] < lattice["error"]["rms"]);
@@ -313,13 +317,15 @@ TEST_SUITE("kdbuild build --max-object-size") {
     const TempFolder folder;
     auto mesh = mesh::read_mesh(folder.write("grid.ply", grid_ply(200)), {});
     REQUIRE(mesh);
-    const Box3d box = mesh::bounds(*mesh);
-    const mesh::LatticeMesh on_lattice = mesh::normalise(*mesh, 21, box);
+    const mesh::Mesh* const meshes[] = {&*mesh};
+    const mesh::LatticeFit fit(meshes);
+    mesh->lattice_points = fit.place(0, fit.lattice(21));
+    const mesh::LatticeMesh on_lattice = mesh::normalise(*mesh, fit.lattice(21));
     double dearest = 1e300;
     for (const double price : {0.0, 0.02, 0.25, 1.0}) {
       build::BuildSettings settings;
       settings.costs.byte_price = price;
-      const auto sampled = tools::sampled_tree_bytes(*mesh, box, 21, settings, {});
+      const auto sampled = tools::sampled_tree_bytes(*mesh, on_lattice.lattice, settings, {});
       const auto tree = build::build_tree(on_lattice.lattice, on_lattice.vertices, on_lattice.triangles, settings);
       REQUIRE(sampled);
       REQUIRE(tree);
@@ -340,7 +346,7 @@ TEST_SUITE("kdbuild build --max-object-size") {
       REQUIRE(report);
       CHECK(std::fabs(static_cast<double>(report->bytes - size.rest) - bytes) < 8192);
     }
-    const auto cancelled = tools::sampled_tree_bytes(*mesh, box, 21, {}, [](double) { return false; });
+    const auto cancelled = tools::sampled_tree_bytes(*mesh, on_lattice.lattice, {}, [](double) { return false; });
     REQUIRE_FALSE(cancelled);
     CHECK(cancelled.error().error_class == ErrorClass::interrupted);
   }

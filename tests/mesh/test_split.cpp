@@ -8,6 +8,7 @@
 #include <map>
 #include <numeric>
 
+#include "mesh/lattice_fit.h"
 #include "mesh/normalise.h"
 #include "mesh/split.h"
 
@@ -74,13 +75,16 @@ TEST_CASE("split: halves where centroids coincide or are no numbers") {
   }
 }
 
-TEST_CASE("normalise: parts in the box of the whole share its lattice, bit for bit") {
-  const Mesh whole = sheet(25, 0.123456789);
-  const auto [low, high] = split_in_halves(whole);
-  const Box3d box = bounds(whole);
+TEST_CASE("normalise: parts of a mesh whose vertices were placed share its lattice, bit for bit") {
+  Mesh whole = sheet(25, 0.123456789);
+  const Mesh* const meshes[] = {&whole};
+  const LatticeFit fit(meshes);
   for (const int bits : {4, 10, 21, 24}) {
     const LatticeMesh all = normalise(whole, bits);
-    const std::array halves{normalise(low, bits, box), normalise(high, bits, box)};
+    const Lattice lattice = fit.lattice(bits);
+    whole.lattice_points = fit.place(0, lattice);
+    const auto [low, high] = split_in_halves(whole);
+    const std::array halves{normalise(low, lattice), normalise(high, lattice)};
     std::map<uint32_t, std::array<Vec3u, 3>> corners;  // of the whole's triangles, by their numbers in the source
     for (size_t t = 0; t < all.triangles.size(); ++t) {
       for (size_t k = 0; k < 3; ++k) corners[all.kept[t]][k] = all.vertices[all.triangles[t][k]];
@@ -98,7 +102,8 @@ TEST_CASE("normalise: parts in the box of the whole share its lattice, bit for b
       }
     }
     CHECK(compared == 3 * all.triangles.size());
-    CHECK(normalise(whole, bits, box).vertices == all.vertices);
+    CHECK(normalise(whole, lattice).vertices == all.vertices);
+    whole.lattice_points.clear();
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
 #include <span>
 
 #include <fmt/format.h>
@@ -10,7 +11,7 @@
 #include "kdbuild/asset_scene.h"
 #include "kdbuild/estimate.h"
 #include "kdbuild/freshness.h"
-#include "mesh/normalise.h"
+#include "mesh/lattice_fit.h"
 #include "mesh/split.h"
 #include "scene/write_scene.h"
 #include "sys/atomic_file.h"
@@ -25,8 +26,8 @@ struct Lot {
   uint32_t mesh = 0;  // of the asset
   std::string where;
   CompileReport report;
-  Box3d box;  // of the lattice
-  int bits = 0;
+  Box3d box;          // of the mesh, model space
+  Lattice lattice;    // shared by the materials of what was one mesh
   size_t pieces = 0;  // made so far, if it had to be split
 };
 
@@ -47,7 +48,8 @@ class SourceBuild {
   Result<void> read(const Fingerprint& known);
   Result<void> clean();
   Result<void> choose_lattices();
-  Result<void> choose_bits(std::span<Lot> lots);
+  Result<void> choose_lattice(std::span<Lot> lots);
+  Result<int> choose_bits(std::span<const mesh::Mesh* const> meshes, const mesh::LatticeFit& fit) const;
   Result<void> compile_all();
   Result<bool> seems_to_fit(const Lot& lot, const mesh::Mesh& mesh);
   Result<void> compile_fitting(Lot& lot, mesh::Mesh mesh, CompileReport report, bool is_piece);
@@ -145,13 +147,7 @@ Result<void> SourceBuild::choose_lattices() {
   for (auto first = lots_.begin(); first != lots_.end();) {
     auto last = first + 1;
     while (last != lots_.end() && are_one(*first, *last)) ++last;
-    Box3d box;
-    for (const Lot& lot : std::span(first, last)) {
-      box.extend(lot.box.lo);
-      box.extend(lot.box.hi);
-    }
-    for (Lot& lot : std::span(first, last)) lot.box = box;
-    if (auto chosen = choose_bits({first, last}); !chosen) {
+    if (auto chosen = choose_lattice({first, last}); !chosen) {
       for (const Lot& lot : std::span(first, last)) {
         if (auto go_on = set_aside({chosen.error().error_class, lot.where, chosen.error().what}); !go_on) return go_on;
       }
@@ -164,29 +160,41 @@ Result<void> SourceBuild::choose_lattices() {
   return {};
 }
 
-/// For meshes on one lattice.
-Result<void> SourceBuild::choose_bits(std::span<Lot> lots) {
-  std::optional<int> bits = settings_.bits;
-  if (settings_.max_error) {
-    std::vector<const mesh::Mesh*> meshes;
-    for (const Lot& lot : lots) meshes.push_back(&mesh_of(lot));
-    const Box3d& box = lots.front().box;
-    bits = mesh::fewest_bits(meshes, box, *settings_.max_error);
-    if (!bits) {
-      double least = 0;
-      for (const mesh::Mesh* mesh : meshes)
-        least = std::max(least, mesh::max_displacement(*mesh, {box.lo, box.extent(), kMaxLatticeBits}));
-      return Error{ErrorClass::usage, lots.front().where,
-                   fmt::format("--max-error {} cannot be kept: {} bits move a vertex by {:.3g}; allow that or use "
-                               "--bits",
-                               *settings_.max_error, kMaxLatticeBits, least)};
-    }
+/// For meshes on one lattice, and the places of their vertices on it: before any is split, so that no seam opens.
+Result<void> SourceBuild::choose_lattice(std::span<Lot> lots) {
+  Timer timer;
+  std::vector<const mesh::Mesh*> meshes;
+  for (const Lot& lot : lots) meshes.push_back(&mesh_of(lot));
+  if (settings_.vertices == VertexForm::float32) {
+    Box3d box;
+    for (const Lot& lot : lots) box.extend(lot.box);
+    for (Lot& lot : lots) lot.lattice = {box.lo, box.extent(), settings_.bits};
+    return {};
   }
-  for (Lot& lot : lots) {
-    lot.bits = *bits;
-    lot.report.max_error = settings_.max_error;
+  const mesh::LatticeFit fit(meshes);
+  const auto bits = choose_bits(meshes, fit);
+  if (!bits) return bits.error();
+  const double reach = settings_.max_error.value_or(std::numeric_limits<double>::infinity());
+  const Lattice lattice = fit.lattice(*bits);
+  for (size_t i = 0; i < lots.size(); ++i) {
+    lots[i].lattice = lattice;
+    lots[i].report.max_error = settings_.max_error;
+    mesh_of(lots[i]).lattice_points = fit.place(i, lattice, reach);
   }
+  const double seconds = timer.seconds() / static_cast<double>(lots.size());
+  for (Lot& lot : lots) lot.report.seconds.normalise = seconds;
   return {};
+}
+
+Result<int> SourceBuild::choose_bits(std::span<const mesh::Mesh* const> meshes, const mesh::LatticeFit& fit) const {
+  if (!settings_.max_error) return settings_.bits;
+  if (const auto bits = fit.fewest_bits(*settings_.max_error)) return *bits;
+  double least = 0;
+  for (const mesh::Mesh* mesh : meshes)
+    least = std::max(least, mesh::rounding_displacement(*mesh, fit.lattice(kMaxLatticeBits)));
+  return Error{ErrorClass::usage, "",
+               fmt::format("--max-error {} cannot be kept: {} bits move a vertex by {:.3g}; allow that or use --bits",
+                           *settings_.max_error, kMaxLatticeBits, least)};
 }
 
 Result<void> SourceBuild::compile_all() {
@@ -209,11 +217,11 @@ Result<void> SourceBuild::compile_all() {
 
 /// Whether a mesh seems to fit into one object. Where that is in doubt and building would take long, samples decide.
 Result<bool> SourceBuild::seems_to_fit(const Lot& lot, const mesh::Mesh& mesh) {
-  const SizeEstimate size = estimated_size(mesh, stored_vertex_bits(settings_.vertices, lot.bits));
+  const SizeEstimate size = estimated_size(mesh, stored_vertex_bits(settings_.vertices, lot.lattice.bits));
   const uint64_t limit = settings_.max_object_size;
   if (size.rest + size.least_tree > limit) return false;
   if (size.rest + size.most_tree <= limit || mesh.triangles.size() < kWorthSampling) return true;
-  const auto tree = sampled_tree_bytes(mesh, lot.box, lot.bits, settings_.tree, progress_);
+  const auto tree = sampled_tree_bytes(mesh, lot.lattice, settings_.tree, progress_);
   if (!tree) return Error{tree.error().error_class, lot.where, tree.error().what};
   return size.rest + *tree <= limit;
 }
@@ -263,8 +271,8 @@ Result<void> SourceBuild::compile_one(Lot& lot, const mesh::Mesh& mesh, CompileR
   std::optional<Share> share;
   if (!name.empty()) share = Share{lot.mesh, asset_.meshes.size(), std::nullopt};
   if (is_piece) share->piece = lot.pieces;
-  const ObjectTarget target{
-      lot.where, path, lot.box, lot.bits, settings_.vertices, provenance(job_, source_hash_, settings_, share)};
+  const ObjectTarget target{lot.where, path, lot.lattice, settings_.vertices,
+                            provenance(job_, source_hash_, settings_, share)};
   const auto progress = [&](double done) {
     const double here = static_cast<double>(triangles_done_) + done * static_cast<double>(mesh.triangles.size());
     return keep_going(progress_, here / static_cast<double>(triangles_));

@@ -76,13 +76,13 @@ Result<void> clean_mesh(mesh::Mesh& mesh, const std::string& where, CompileRepor
 Result<AtomicFile> compile(const mesh::Mesh& mesh, const ObjectTarget& target, const build::BuildSettings& settings,
                            CompileReport& report, const Progress& progress) {
   Timer timer;
-  const mesh::LatticeMesh lattice_mesh = mesh::normalise(mesh, target.bits, target.box, target.vertices);
+  const mesh::LatticeMesh lattice_mesh = mesh::normalise(mesh, target.lattice, target.vertices);
   report_lattice(lattice_mesh, report);
   report.vertex_form = target.vertices;
-  report.seconds.normalise = timer.lap();
+  report.seconds.normalise += timer.lap();
   if (lattice_mesh.triangles.empty()) {
     return Error{ErrorClass::mesh, target.where,
-                 fmt::format("every triangle collapses on a lattice of {} bits: use more", target.bits)};
+                 fmt::format("every triangle collapses on a lattice of {} bits: use more", target.lattice.bits)};
   }
 
   auto tree =

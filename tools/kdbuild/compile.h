@@ -49,8 +49,7 @@ Result<void> clean_mesh(mesh::Mesh& mesh, const std::string& where, CompileRepor
 struct ObjectTarget {
   std::string where;  // names the mesh in errors
   std::string output;
-  Box3d box;  // of the lattice, model space; contains the mesh
-  int bits = kDefaultLatticeBits;
+  Lattice lattice;                            // its box contains the mesh
   VertexForm vertices = VertexForm::lattice;  // float32 only with kMaxLatticeBits
   nkd::Provenance provenance;
 };

@@ -39,14 +39,14 @@ SizeEstimate estimated_size(const mesh::Mesh& mesh, int stored_bits) {
   return {rest, triangles * kLeastTreeBytes, triangles * kMostTreeBytes};
 }
 
-Result<uint64_t> sampled_tree_bytes(const mesh::Mesh& mesh, const Box3d& box, int bits,
+Result<uint64_t> sampled_tree_bytes(const mesh::Mesh& mesh, const Lattice& lattice,
                                     const build::BuildSettings& settings, const Progress& progress) {
   const size_t triangles = mesh.triangles.size();
   uint64_t bytes = 0, sampled = 0;
   for (size_t i = 0; i < kSamples; ++i) {
     const auto seed = static_cast<uint32_t>(triangles * (2 * i + 1) / (2 * kSamples));
     const mesh::Mesh sample = mesh::neighbourhood(mesh, seed, kSampleSize);
-    const mesh::LatticeMesh on_lattice = mesh::normalise(sample, bits, box);
+    const mesh::LatticeMesh on_lattice = mesh::normalise(sample, lattice);
     if (on_lattice.triangles.empty()) continue;
     // In the box of the whole a byte a triangle of the sample is as dear as one of the whole if it is so much cheaper.
     build::BuildSettings cheaper = settings;

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "build/build.h"
-#include "core/box.h"
+#include "core/lattice.h"
 #include "mesh/mesh.h"
 #include "sys/progress.h"
 #include "sys/result.h"
@@ -23,10 +23,10 @@ struct SizeEstimate {
 /// bounds of the tree hold for any settings, and are far apart.
 SizeEstimate estimated_size(const mesh::Mesh& mesh, int stored_bits);
 
-/// About how many bytes the tree of a clean mesh will have, on the lattice over `box`: trees of samples are built, a
+/// About how many bytes the tree of a clean mesh will have on the lattice: trees of samples are built, a
 /// few thousand triangles about each of some, for what bytes a triangle takes depends on the mesh and on the settings
 /// alike. Rather too many than too few. Errors as build_tree's.
-Result<uint64_t> sampled_tree_bytes(const mesh::Mesh& mesh, const Box3d& box, int bits,
+Result<uint64_t> sampled_tree_bytes(const mesh::Mesh& mesh, const Lattice& lattice,
                                     const build::BuildSettings& settings, const Progress& progress);
 
 /// From so many triangles on, samples take a small part of the time that the tree does.
