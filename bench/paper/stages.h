@@ -47,6 +47,7 @@ KD_HD KD_INLINE SceneView only(SceneView scene, uint32_t instance) {
 /// Has the interface of render::ThroughHierarchy: every instance, wherever it is.
 struct AllInstances {
   static constexpr TriangleLayout kLayout = TriangleLayout::expanded;
+  using Sides = render::BothSides;
 
   template <class Visit>
   KD_HD static void for_each(const SceneView& scene, const Ray&, const double&, const Visit& visit) {

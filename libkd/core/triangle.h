@@ -113,7 +113,7 @@ class ExactTest {
     return {w.distance_times_sum(sign_) * inverse, w.v * inverse, w.w * inverse};
   }
 
- private:
+ protected:
   /// The three edge functions, exact in sign: each the weight of the vertex across from its edge.
   struct Weights {
     detail::Sheared<double> a, b, c;
@@ -177,6 +177,7 @@ class ExactTest {
   /// y are a left-handed pair.
   KD_HD KD_INLINE bool leaves_by(const Weights& w) const { return (w.sum() * sign_ > 0) != (along_x_ || along_y_); }
 
+ private:
   /// By how much a face that the ray leaves by comes later, of its vertices' distances: 16 times the rounding of s.
   static constexpr double kLeavingLater = 0x1p-46;
 
@@ -184,6 +185,19 @@ class ExactTest {
   float sign_;               // of the direction along its axis
   float slope_x_, slope_y_;  // what x and y lose for each step along the axis, negated
   bool along_x_, along_y_;   // the axis; where both are false it is z
+};
+
+/// Of the triangles that ExactTest meets, those whose front the ray meets, where their corners are wound
+/// counterclockwise: its direction is against their normal. As exact: three weights of one sign have a sum of that
+/// sign.
+class FrontTest : public ExactTest {
+ public:
+  using ExactTest::ExactTest;
+
+  template <RayMode mode, class Counter>
+  KD_HD KD_INLINE bool meets(const TriangleVertices& triangle, float s_limit, double& s, Counter& counter) const {
+    return ExactTest::meets<mode>(triangle, s_limit, s, counter) && !leaves_by(weigh(triangle));
+  }
 };
 
 /// ExactTest::meets and, if so, ExactTest::locate.

@@ -77,6 +77,7 @@ Result<RenderStats> CpuRenderer::render(Strip strip, Frame& frame, const Progres
   view.scene.objects = objects_.views.data();
   view.scene.overrides = scene_.overrides.data();
   view.scene.lights = scene_.lights.data();
+  view.scene.front_only = scene_.front_only.empty() ? nullptr : scene_.front_only.data();
   view.scene.instance_numbers = scene_.instance_numbers.empty() ? nullptr : scene_.instance_numbers.data();
   view.scene.object_numbers = scene_.object_numbers.data();
   view.hits = hits_.data();

@@ -168,6 +168,7 @@ Result<void> place(LoadedScene& loaded, const scene::Scene& scene, std::span<con
   loaded.placed = std::move(*placed);
   loaded.instances = loaded.placed->instances();
   loaded.instance_numbers = loaded.placed->numbers();
+  loaded.front_only = loaded.placed->front_only();
   loaded.hierarchy = loaded.placed->hierarchy();
   loaded.skipped.instances = loaded.placed->left_out();
   return {};

@@ -53,6 +53,7 @@ struct LoadedScene {
   std::optional<scene::PlacedScene> placed;
   std::span<const scene::Instance> instances;  // of `placed`, and so are the hierarchy and the numbers
   std::span<const uint32_t> instance_numbers;  // of the scene: which those are; empty: all
+  std::span<const uint8_t> front_only;         // 1 for instances whose backs the camera does not see; empty: for none
   std::span<const HierarchyNode> hierarchy;
   std::vector<double> frames;     // that it is loaded for; empty: any
   std::vector<LightView> lights;  // those that can light something

@@ -27,6 +27,7 @@ struct PipelinePlan {
   bool gamma_on_preview = false;
   bool gamma_on_film = false;
   bool one_instance = false;  // is all that the scene places
+  bool one_sided = false;     // instances are in it
 
   /// AOVs are of the pixel's centre, which is none of several samples.
   bool centres_apart() const { return samples > 1 && !aovs.empty(); }
@@ -55,6 +56,7 @@ template <class Launch, class LaunchAndCount>
 void run_pipeline(const FrameView& frame, const PipelinePlan& plan, Launch&& launch,
                   LaunchAndCount&& launch_and_count) {
   const auto traced_stages = [&]<class Instances>(Instances) {
+    using Shadows = typename Instances::Shadows;
     const auto write_aovs = [&] {
       for (const AovTarget& target : plan.aovs) {
         if (target.aov == image::Aov::visits) {
@@ -74,13 +76,15 @@ void run_pipeline(const FrameView& frame, const PipelinePlan& plan, Launch&& lau
       // Ray generation, intersection, and reduction hit by hit.
       const uint64_t hits = launch_and_count(ObjectIntersection<Instances>{at});
       if (hits == 0 || plan.light_count == 0) launch(Ambient{at});
-      for (uint32_t light = 0; light < plan.light_count && hits > 0; ++light) launch(Lighting<Instances>{at, light});
+      for (uint32_t light = 0; light < plan.light_count && hits > 0; ++light) launch(Lighting<Shadows>{at, light});
     }
     if (plan.samples > 1) launch(Average{at});
     if (!plan.centres_apart()) write_aovs();
   };
   with_layout(frame.scene.layout, [&]<TriangleLayout layout>() {
-    if (plan.one_instance) {
+    if (plan.one_sided) {
+      traced_stages(ThroughOneSided<layout>{});
+    } else if (plan.one_instance) {
       traced_stages(OnlyInstance<layout>{});
     } else {
       traced_stages(ThroughHierarchy<layout>{});

@@ -24,7 +24,8 @@ PipelinePlan pipeline_plan(const LoadedScene& scene, const RenderSettings& setti
           aovs,
           settings.preview,
           settings.gamma_on_film,
-          scene.is_one_instance()};
+          scene.is_one_instance(),
+          !scene.front_only.empty()};
 }
 
 size_t bytes_a_pixel(const RenderSettings& settings) {

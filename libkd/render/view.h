@@ -48,6 +48,7 @@ struct SceneView {
   const ShadedObjectView* objects = nullptr;
   const Material* overrides = nullptr;
   const LightView* lights = nullptr;
+  const uint8_t* front_only = nullptr;         // 1 for instances whose backs no camera ray meets; null: for none
   const uint32_t* instance_numbers = nullptr;  // in the scene; null: the same as here
   const uint32_t* object_numbers = nullptr;    // in the scene
   uint32_t instance_count = 0;

@@ -254,6 +254,32 @@ void Expansion::list_moving(Range range) {
   }
 }
 
+std::vector<uint8_t> Expansion::front_only() const {
+  const auto asks = [](const Part& part) { return part.sides == Sides::front; };
+  const auto& characters = scene_->characters;
+  if (std::none_of(characters.begin(), characters.end(),
+                   [&](const Character& c) { return std::any_of(c.parts.begin(), c.parts.end(), asks); }))
+    return {};
+  std::vector<uint8_t> marks(count_, 0);
+  for (const Root& root : roots_) mark_sides(root.character, root.first, std::nullopt, marks);
+  if (std::find(marks.begin(), marks.end(), 1) == marks.end()) marks.clear();
+  return marks;
+}
+
+void Expansion::mark_sides(uint32_t character, uint32_t first, std::optional<Sides> outer,
+                           std::span<uint8_t> marks) const {
+  const std::vector<Part>& parts = scene_->characters[character].parts;
+  for (uint32_t k = 0; k < parts.size(); ++k) {
+    const std::optional<Sides> sides = outer ? outer : parts[k].sides;
+    const uint32_t instance = first + plans_[character].first[k];
+    if (parts[k].character) {
+      mark_sides(*parts[k].character, instance, sides, marks);
+    } else if (const uint32_t slot = slots_.empty() ? instance : slots_[instance]; slot != kForgotten) {
+      marks[slot] = sides == Sides::front;
+    }
+  }
+}
+
 void Expansion::keep(std::span<const uint8_t> kept) {
   slots_.assign(count_, kForgotten);
   count_ = 0;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -25,6 +26,9 @@ class Expansion {
   /// Keeps those instances of which `kept` is not 0, under numbers from 0 in the same order, and forgets the others.
   /// `kept` has count() elements.
   void keep(std::span<const uint8_t> kept);
+
+  /// 1 for instances of which the camera sees the fronts alone; empty: for none.
+  std::vector<uint8_t> front_only() const;
 
   /// The instances that keys move, ascending and apart.
   std::span<const Range> moving() const { return moving_; }
@@ -66,6 +70,7 @@ class Expansion {
   void find_moving(uint32_t character);
   void list_moving(uint32_t character, uint32_t first);
   void list_moving(Range range);
+  void mark_sides(uint32_t character, uint32_t first, std::optional<Sides> outer, std::span<uint8_t> marks) const;
 
   const Scene* scene_;
   std::vector<CharacterPlan> plans_;  // one a character

@@ -85,6 +85,7 @@ void PlacedScene::keep(std::span<const uint8_t> kept) {
 void PlacedScene::start() {
   nodes_ = HugeArray<HierarchyNode>(hierarchy_size(instances_.size()));
   build();
+  front_only_ = expansion_.front_only();
   if (expansion_.moving().empty()) return;
   is_moved_.assign(instances_.size(), 0);
   size_t movable = 0;

@@ -30,6 +30,8 @@ class PlacedScene {
   std::span<const Instance> instances() const { return instances_; }
   /// Which of place_instances those are, ascending; empty: all.
   std::span<const uint32_t> numbers() const { return numbers_; }
+  /// 1 for those of which the camera sees the fronts alone; empty: for none.
+  std::span<const uint8_t> front_only() const { return front_only_; }
   /// How many instances are not there.
   uint32_t left_out() const { return left_out_; }
   /// As build_hierarchy, but where motion has refitted it: then its boxes still hold what is below them, and what a ray
@@ -61,6 +63,7 @@ class PlacedScene {
   double frame_;
   HugeArray<Instance> instances_;
   std::vector<uint32_t> numbers_;
+  std::vector<uint8_t> front_only_;
   uint32_t left_out_ = 0;
   HugeArray<HierarchyNode> nodes_;
   Refitter refitter_;              // empty if nothing moves

@@ -63,6 +63,7 @@ Part Reader::read_part(const scene_fb::Part& source, const Place& at) {
   } else {
     std::visit([&](auto&& placement) { part.placement = std::move(placement); }, read_placement(source, at));
   }
+  if (source.sides()) part.sides = *source.sides() == scene_fb::Sides::front ? Sides::front : Sides::both;
   if (source.material()) part.material = read_material(*source.material(), at + ".material");
   return part;
 }

@@ -121,6 +121,9 @@ using Placement = std::variant<BoxPlacement, TransformPlacement, FramePlacement>
 /// The same without a box: a character has no unit cube.
 using CharacterPlacement = std::variant<TransformPlacement, FramePlacement>;
 
+/// Which sides of surfaces the camera sees; the front is where a triangle's corners are wound counterclockwise.
+enum class Sides : uint8_t { both, front };
+
 struct Part {
   std::string name;     // may be empty
   uint32_t object = 0;  // index into Scene::objects; not read if the part places a character
@@ -128,6 +131,7 @@ struct Part {
   std::optional<Material> material;   // instead of those of everything below it: a part further out wins
   int line = 0;                       // in the scene file, from 1, for errors that only its object's box can show
   std::optional<uint32_t> character;  // index into Scene::characters: the part places it, and no object
+  std::optional<Sides> sides;         // of everything below it: a part further out wins; both where none says
 };
 
 /// Characters may place one another, but none itself, not even through others, and at most kMaxNesting deep.

@@ -262,6 +262,7 @@ void Writer::put_part(const Part& part) {
   const std::string placed = part.character ? "\"character\": " + json_string(character_names_[*part.character])
                                             : "\"object\": " + json_string(object_names_[part.object]);
   put("{}{}", placed, std::visit([&](const auto& p) { return placement(p); }, part.placement));
+  if (part.sides) put(", \"sides\": \"{}\"", *part.sides == Sides::front ? "front" : "both");
   if (part.material) put(", \"material\": {}", material(*part.material));
   put("}}");
 }

@@ -250,3 +250,35 @@ TEST_CASE("triangle: a vertex that 4096 triangles share is met once") {
     CHECK(outer_leaks(fan, bits, 200, 4) == 0);
   }
 }
+
+TEST_CASE("triangle: a ray meets the front of it, or of the same wound the other way, and never both") {
+  Random random(31);
+  NoCounter counter;
+  int met = 0, fronts = 0, wrong = 0;
+  for (const int bits : {2, 10, 21, 24}) {
+    for (int i = 0; i < 60000; ++i) {
+      const Corners corners = some_triangle(random, bits);
+      const Vec3u target = random.chance(0.6) ? corners[random.integer(0, 2)] : random.point(lattice_max(bits));
+      const Vec3d origin = vec_cast<double>(random.point(lattice_max(bits)));
+      LatticeRay ray;
+      if (!snap_ray(origin, vec_cast<double>(target) - origin, 0, 1e300, bits, ray)) continue;
+      const TriangleVertices as_is = expanded(corners), turned = expanded({corners[0], corners[2], corners[1]});
+      double s = 0;
+      const bool meets = ExactTest(ray).meets<RayMode::closest>(as_is, 0, s, counter);
+      const bool front = FrontTest(ray).meets<RayMode::closest>(as_is, 0, s, counter);
+      const bool back = FrontTest(ray).meets<RayMode::closest>(turned, 0, s, counter);
+      wrong += (front || back) != meets || (front && back);
+      met += meets;
+      if (!front) continue;
+      ++fronts;
+      const Vec3d a = vec_cast<double>(corners[0]);
+      const Vec3d normal = cross(vec_cast<double>(corners[1]) - a, vec_cast<double>(corners[2]) - a);
+      const Vec3d direction = vec_cast<double>(ray.direction);
+      wrong += dot(normal, direction) > 1e-9 * length(normal) * length(direction);
+    }
+  }
+  CHECK(wrong == 0);
+  CHECK(met > 1000);
+  CHECK(fronts > met / 3);
+  CHECK(fronts < 2 * met / 3);
+}

@@ -85,6 +85,11 @@ TEST_CASE("CPU and CUDA images are bit-identical") {
   Workshop workshop;
   for (const char* name : {"cathedral.json", "spheres.json", "turntable.json"})
     check_same(name, workshop.data_scene(name), *cpu, *cuda);
+  scene::Scene one_sided = workshop.data_scene("cathedral.json");
+  for (scene::Character& character : one_sided.characters) {
+    for (size_t i = 0; i < character.parts.size(); i += 2) character.parts[i].sides = scene::Sides::front;
+  }
+  check_same("cathedral.json, fronts alone of every second part", one_sided, *cpu, *cuda);
 
   for (const char* name : kRealMeshes) {
     const auto mesh = shared_mesh(std::string(name) + ".ply");

@@ -35,7 +35,7 @@ const std::string kFull = R"({
        "scale": [1, 1, -1]},
       {"object": "altär", "box": {"point": [1, 2, 3], "x_axis": [4, 0, 0], "y_axis": [0, 5, 0], "z_axis": [0, 0, 6]}}]},
     {"parts": [
-      {"object": "bay", "material": {"diffuse": [1, 0, 0], "specular": [0.5, 0.5, 0.5], "shininess": 40, "emission": [0, 2, 0]}},
+      {"object": "bay", "material": {"diffuse": [1, 0, 0], "specular": [0.5, 0.5, 0.5], "shininess": 40, "emission": [0, 2, 0]}, "sides": "front"},
       {"object": "bay", "frame": {"point": [1, 2, 3], "x_axis": [0, 1, 0], "y_axis": [1, 1, 0], "z_axis": [0, 0, 2]}}]}
   ]
 })";
@@ -114,6 +114,7 @@ TEST_CASE("scene: every field is read") {
   CHECK(painted.line == 16);
   REQUIRE(painted.material);
   CHECK(*painted.material == Material{Material{}.ambient, {1, 0, 0}, {0.5f, 0.5f, 0.5f}, 40, {0, 2, 0}});
+  CHECK(painted.sides == Sides::front);
   const Frame frame = std::get<FramePlacement>(scene->characters[1].parts.at(1).placement).frame;
   CHECK(frame.apply_point({1, 2, 3}) == Vec3d{3, 5, 9});
 }
@@ -217,6 +218,7 @@ const BadScene kBadScenes[] = {
      "14:37", "'frame' does not go with 'box'"},
     {", \"z_axis\": [0, 0, 2]", "", "17:34", "'frame' lacks 'z_axis'"},
     {"\"shininess\": 40", "\"shininess\": -1", "16:102", "'shininess' must be from 0"},
+    {"\"sides\": \"front\"", "\"sides\": \"back\"", "16:139", "\"both\" or \"front\""},
     {"\"emission\": [0,", "\"emission\": [-1,", "16:118", "from 0 to"},
     {"\"diffuse\": [1, 0, 0]", "\"diffuse\": [1, -1, 0]", "16:49", "from 0 to"},
 };

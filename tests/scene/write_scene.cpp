@@ -47,6 +47,8 @@ Scene full_scene(const test::TempFolder& folder) {
   Part first, second;
   first.character = 3;
   first.material = Material{};
+  first.sides = Sides::front;
+  turned.sides = Sides::both;
   second.character = 4;
   second.placement = TransformPlacement{{1, 2, 3}};
   s.characters.push_back({"outer", {first, second, box}, FramePlacement{{{1, 2, 3}, {0, 1, 0}, {1, 0, 0}, {0, 0, 1}}}});

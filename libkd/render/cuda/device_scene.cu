@@ -40,6 +40,7 @@ void DeviceScene::lay_out(const LoadedScene& scene, TriangleLayout layout) {
   view_.object_numbers = memory_.piece<uint32_t>(scene.object_numbers.size());
   memory_.section("instances");
   view_.instances = memory_.piece<InstanceView>(scene.instances.size());
+  view_.front_only = memory_.piece<uint8_t>(scene.front_only.size());
   view_.instance_numbers = memory_.piece<uint32_t>(scene.instance_numbers.size());
   view_.overrides = memory_.piece<Material>(scene.overrides.size());
   memory_.section("hierarchy");
@@ -75,6 +76,7 @@ Result<void> DeviceScene::fill(const LoadedScene& scene, cudaStream_t stream) {
   KD_CUDA_TRY(fill_piece(view_.objects, std::span<const ShadedObjectView>(object_views_), stream), action);
   KD_CUDA_TRY(fill_piece(view_.instances, std::span<const InstanceView>(instances), stream), action);
   KD_CUDA_TRY(fill_piece(view_.object_numbers, std::span<const uint32_t>(scene.object_numbers), stream), action);
+  KD_CUDA_TRY(fill_piece(view_.front_only, scene.front_only, stream), action);
   KD_CUDA_TRY(fill_piece(view_.instance_numbers, scene.instance_numbers, stream), action);
   KD_CUDA_TRY(fill_piece(view_.overrides, std::span<const Material>(scene.overrides), stream), action);
   KD_CUDA_TRY(fill_piece(view_.hierarchy, scene.hierarchy, stream), action);

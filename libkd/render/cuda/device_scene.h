@@ -25,6 +25,7 @@ class DeviceScene {
     view.objects = view_.objects;
     view.overrides = view_.overrides;
     view.lights = view_.lights;
+    view.front_only = view_.front_only;
     view.instance_numbers = view_.instance_numbers;
     view.object_numbers = view_.object_numbers;
   }

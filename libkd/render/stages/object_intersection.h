@@ -14,13 +14,37 @@ struct Excluded {
   uint32_t triangle = kNone;
 };
 
-/// How a ray finds the instances that it may meet: these two have the same interface.
+/// Which sides of an instance's surfaces a camera ray meets. A shadow ray meets both, everywhere.
+struct BothSides {
+  template <TriangleLayout layout, class Counter>
+  KD_HD KD_INLINE static uint32_t closest(const SceneView& scene, uint32_t instance, const LatticeRay& ray,
+                                          float s_limit, Counter& counter) {
+    const ObjectView& object = scene.objects[scene.instances[instance].object].tree;
+    return traverse<RayMode::closest, ExactTest, layout>(object, ray, s_limit, kNoTriangle, counter);
+  }
+};
+
+/// Of some instances the fronts alone. The lattice is wound as the mesh is, however an instance is placed, mirrored
+/// ones too.
+struct SidesAsAsked {
+  template <TriangleLayout layout, class Counter>
+  KD_HD KD_INLINE static uint32_t closest(const SceneView& scene, uint32_t instance, const LatticeRay& ray,
+                                          float s_limit, Counter& counter) {
+    if (!scene.front_only[instance]) return BothSides::closest<layout>(scene, instance, ray, s_limit, counter);
+    const ObjectView& object = scene.objects[scene.instances[instance].object].tree;
+    return traverse<RayMode::closest, FrontTest, layout>(object, ray, s_limit, kNoTriangle, counter);
+  }
+};
+
+/// How a ray finds the instances that it may meet: these have the same interface.
 ///
 /// Calls visit(instance) for instances whose boxes the ray passes, nearer boxes first, while visit returns true. Boxes
 /// that begin beyond `t_limit`, which visit may lower, are left out.
 template <TriangleLayout layout = TriangleLayout::expanded>
 struct ThroughHierarchy {
   static constexpr TriangleLayout kLayout = layout;
+  using Sides = BothSides;
+  using Shadows = ThroughHierarchy;  // what shadow rays go through
 
   template <class Visit>
   KD_HD static void for_each(const SceneView& scene, const Ray& ray, const double& t_limit, const Visit& visit) {
@@ -52,11 +76,19 @@ struct ThroughHierarchy {
 template <TriangleLayout layout = TriangleLayout::expanded>
 struct OnlyInstance {
   static constexpr TriangleLayout kLayout = layout;
+  using Sides = BothSides;
+  using Shadows = OnlyInstance;
 
   template <class Visit>
   KD_HD KD_INLINE static void for_each(const SceneView&, const Ray&, const double&, const Visit& visit) {
     visit(0);
   }
+};
+
+/// For scenes with instances that show their fronts alone: kernels of their own, so that others pay nothing for it.
+template <TriangleLayout layout = TriangleLayout::expanded>
+struct ThroughOneSided : ThroughHierarchy<layout> {
+  using Sides = SidesAsAsked;
 };
 
 namespace detail {
@@ -85,10 +117,10 @@ KD_HD inline SurfaceHit closest_hit(const SceneView& scene, const Ray& ray, Coun
     if (!detail::enter_instance(scene, index, ray, lattice_ray)) return true;
     const float s_limit = best.instance == kNone ? lattice_ray.s_max : detail::limit_in_lattice(lattice_ray, t_limit);
     if (s_limit < 0) return true;
-    const ObjectView& object = scene.objects[scene.instances[index].object].tree;
     const uint32_t triangle =
-        traverse<RayMode::closest, ExactTest, Instances::kLayout>(object, lattice_ray, s_limit, kNoTriangle, counter);
+        Instances::Sides::template closest<Instances::kLayout>(scene, index, lattice_ray, s_limit, counter);
     if (triangle == kNoTriangle) return true;
+    const ObjectView& object = scene.objects[scene.instances[index].object].tree;
     const TriangleHit hit = ExactTest(lattice_ray).locate(object.triangle<Instances::kLayout>(triangle));
     reduce(best, {lattice_ray.t_at(hit.s), hit.u, hit.v, index, triangle});
     t_limit = best.t;
