@@ -79,7 +79,7 @@ KD_HD KD_INLINE int largest_axis(Vec3d d) {
 
 /// Takes a ray that is already in lattice space onto the grid. `o` and `d` are in lattice steps; they may be anything,
 /// far away and NaN included. False: the ray has no point in the cube within [t_min, t_max], or is not a ray.
-KD_HD inline bool snap_ray(Vec3d o, Vec3d d, double t_min, double t_max, int bits, LatticeRay& ray) {
+KD_HD KD_HOST_INLINE bool snap_ray(Vec3d o, Vec3d d, double t_min, double t_max, int bits, LatticeRay& ray) {
   const int k = largest_axis(d);
   const double ok = o[k], dk = d[k], speed = std::fabs(dk);
   if (!(speed > 1e-300)) return false;
