@@ -104,7 +104,7 @@ class Files {
   void add(const std::string& path) { known_.insert(identity(path)); }
 
  private:
-  /// Which file it is, or where the name of one that is not there yet leads: finding that out takes a hundred times as
+  /// Which file it is, or where the name of one that is not there yet leads: finding that out takes several times as
   /// long, and a scene may list files by the thousand.
   static std::string identity(const std::string& path) {
     struct stat status {};

@@ -17,9 +17,8 @@ struct Excluded {
 /// Which sides of an instance's surfaces a camera ray meets. A shadow ray meets both, everywhere.
 struct BothSides {
   template <TriangleLayout layout, class Counter>
-  KD_HD KD_INLINE static uint32_t closest(const SceneView& scene, uint32_t instance, const LatticeRay& ray,
+  KD_HD KD_INLINE static uint32_t closest(const SceneView&, uint32_t, const ObjectView& object, const LatticeRay& ray,
                                           float s_limit, Counter& counter) {
-    const ObjectView& object = scene.objects[scene.instances[instance].object].tree;
     return traverse<RayMode::closest, ExactTest, layout>(object, ray, s_limit, kNoTriangle, counter);
   }
 };
@@ -28,10 +27,9 @@ struct BothSides {
 /// ones too.
 struct SidesAsAsked {
   template <TriangleLayout layout, class Counter>
-  KD_HD KD_INLINE static uint32_t closest(const SceneView& scene, uint32_t instance, const LatticeRay& ray,
-                                          float s_limit, Counter& counter) {
-    if (!scene.front_only[instance]) return BothSides::closest<layout>(scene, instance, ray, s_limit, counter);
-    const ObjectView& object = scene.objects[scene.instances[instance].object].tree;
+  KD_HD KD_INLINE static uint32_t closest(const SceneView& scene, uint32_t instance, const ObjectView& object,
+                                          const LatticeRay& ray, float s_limit, Counter& counter) {
+    if (!scene.front_only[instance]) return BothSides::closest<layout>(scene, instance, object, ray, s_limit, counter);
     return traverse<RayMode::closest, FrontTest, layout>(object, ray, s_limit, kNoTriangle, counter);
   }
 };
@@ -117,10 +115,10 @@ KD_HD inline SurfaceHit closest_hit(const SceneView& scene, const Ray& ray, Coun
     if (!detail::enter_instance(scene, index, ray, lattice_ray)) return true;
     const float s_limit = best.instance == kNone ? lattice_ray.s_max : detail::limit_in_lattice(lattice_ray, t_limit);
     if (s_limit < 0) return true;
-    const uint32_t triangle =
-        Instances::Sides::template closest<Instances::kLayout>(scene, index, lattice_ray, s_limit, counter);
-    if (triangle == kNoTriangle) return true;
     const ObjectView& object = scene.objects[scene.instances[index].object].tree;
+    const uint32_t triangle =
+        Instances::Sides::template closest<Instances::kLayout>(scene, index, object, lattice_ray, s_limit, counter);
+    if (triangle == kNoTriangle) return true;
     const TriangleHit hit = ExactTest(lattice_ray).locate(object.triangle<Instances::kLayout>(triangle));
     reduce(best, {lattice_ray.t_at(hit.s), hit.u, hit.v, index, triangle});
     t_limit = best.t;
