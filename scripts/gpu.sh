@@ -47,12 +47,14 @@ for scene in sibenik_paper cathedral; do
 done
 
 meshes="sibenik sponza bunny dragon_res2 staircase living_room"
-echo "== traversal, 1920 x 1080, and what exactness costs: the same kernel with the usual float tests"
+echo "== traversal, 1920 x 1080, and what exactness costs: the same kernel with the usual float tests; compact triangles"
 for mesh in $meshes; do
   for test in exact moller-trumbore woop; do
     $bin/kdbench trace dist/objects/$mesh.nkd --camera dist/shared/data/cameras/$mesh.txt --device cuda --repeat 20 --triangle-test $test \
       --json "$out/trace-$mesh-$test.json"
   done
+  $bin/kdbench trace dist/objects/$mesh.nkd --camera dist/shared/data/cameras/$mesh.txt --device cuda --repeat 20 --layout compact \
+    --json "$out/trace-$mesh-compact.json"
 done
 
 echo "== the floor: instructions and bytes, the chip's rates, and what was measured"
