@@ -87,6 +87,8 @@ class CudaRenderer final : public Renderer {
   /// In the settings' layout, or the first one that there is memory for.
   Result<void> upload_scene();
   Result<void> upload_in(TriangleLayout layout);
+  /// Loads the kernels that a frame will launch: the driver would at their first launch, and hold up the frame.
+  void load_kernels() const;
   Result<RenderStats> run_stages(const FrameView& view, const Progress& progress);
   Result<void> download_strip(const FrameView& view, Strip strip, Frame& frame);
 
@@ -111,11 +113,26 @@ Result<void> CudaRenderer::upload_in(TriangleLayout layout) {
   return buffers_.create(scene_, settings_);
 }
 
+void CudaRenderer::load_kernels() const {
+  PipelinePlan plan = pipeline_plan(scene_, settings_, buffers_.targets());
+  plan.samples = min_of(plan.samples, 2u);
+  const auto load_kernel = [](const auto& stage) -> uint64_t {
+    cudaFuncAttributes attributes;
+    cudaFuncGetAttributes(&attributes, stage_kernel<std::decay_t<decltype(stage)>>);
+    return 1;
+  };
+  FrameView view = strip_view(scene_, settings_, {0, scene_.window.height});
+  view.scene.layout = holding_.layout;
+  run_pipeline(view, plan, load_kernel, load_kernel);
+  cudaGetLastError();  // what cannot be loaded fails when it is launched, and says so there
+}
+
 Result<void> CudaRenderer::open() {
   Timer timer;
   KD_CUDA_TRY(cudaSetDevice(index_), "choosing the device");
   KD_CUDA_TRY(stream_.create(), "starting");
   if (auto uploaded = upload_scene(); !uploaded) return uploaded;
+  load_kernels();
   holding_.upload_seconds = timer.seconds();
   holding_.object_bytes = object_bytes(scene_, holding_.layout);
   holding_.scene_bytes = device_scene_.bytes() - holding_.object_bytes;
