@@ -7,17 +7,18 @@
 #include <cstring>
 #include <type_traits>
 
+/// KD_INLINE: for what inner loops call. KD_HOST_INLINE: for what a device's compiler inlines by itself and a host's
+/// does not. Left alone, g++ made functions of the triangle test and of snapping, which took longer than what they do:
+/// vectors go over the stack, written in pieces and read whole, and no processor forwards that.
 #if defined(__CUDACC__)
 #define KD_HD __host__ __device__
 #define KD_INLINE __forceinline__
 #define KD_HOST_INLINE inline
 #else
 #define KD_HD
-#define KD_INLINE inline
+#define KD_INLINE [[gnu::always_inline]] inline
 #define KD_HOST_INLINE [[gnu::always_inline]] inline
 #endif
-/// KD_HOST_INLINE: for what a device's compiler inlines by itself and a host's does not, though a call costs more than
-/// it does: vectors go over the stack, written in pieces and read whole, which no processor forwards.
 
 /// Whether this is the pass that compiles for a device.
 #if defined(__CUDA_ARCH__)
