@@ -9,6 +9,7 @@
 
 #include "commands.h"
 #include "common/console.h"
+#include "common/layout.h"
 #include "common/report.h"
 #include "ray_options.h"
 #include "sys/atomic_file.h"
@@ -196,7 +197,7 @@ Command trace_command(CLI::App& app) {
   c->add_option("--hits", o->hits, "Write the hits: float t, int32 primitive, float u, v, 16 bytes each");
   c->add_option("--json", o->json, "Write a JSON report to this file, or to stdout (-)");
   return {c, [o] {
-            if (o->layout == "compact") o->effort.layout = TriangleLayout::compact;
+            o->effort.layout = *tools::layout_named(o->layout);
             const auto done = trace(*o);
             return done ? 0 : tools::fail(kKdbench, done.error());
           }};

@@ -35,7 +35,7 @@ class HostObject {
 struct HostObjects {
   HostObjects(const LoadedScene& scene, TriangleLayout layout);
 
-  std::vector<HostObject> objects;  // those that were opened
+  std::vector<HostObject> objects;  // what the views point to
   std::vector<ShadedObjectView> views;
 };
 

@@ -13,8 +13,6 @@ namespace kd::render {
 
 namespace {
 
-bool is_black(Vec3f c) { return c.x == 0 && c.y == 0 && c.z == 0; }
-
 /// Which attribute sections some stage of this render reads.
 struct Needs {
   bool materials = false;
@@ -24,9 +22,9 @@ struct Needs {
 
 /// At some frame.
 bool may_shine(const scene::Light& light) {
-  return !is_black(light.colour) || std::any_of(light.keys.begin(), light.keys.end(), [](const scene::LightKey& key) {
-    return key.colour && !is_black(*key.colour);
-  });
+  return !scene::is_black(light.colour) ||
+         std::any_of(light.keys.begin(), light.keys.end(),
+                     [](const scene::LightKey& key) { return key.colour && !scene::is_black(*key.colour); });
 }
 
 Needs needs_of(const scene::Scene& scene, const RenderSettings& settings) {
@@ -34,7 +32,7 @@ Needs needs_of(const scene::Scene& scene, const RenderSettings& settings) {
     return std::find(settings.aovs.begin(), settings.aovs.end(), aov) != settings.aovs.end();
   };
   const bool lit = std::any_of(scene.lights.begin(), scene.lights.end(), may_shine);
-  return {lit || !is_black(scene.ambient), lit || asked(image::Aov::normal), asked(image::Aov::primitive)};
+  return {lit || !scene::is_black(scene.ambient), lit || asked(image::Aov::normal), asked(image::Aov::primitive)};
 }
 
 Result<void> load_attributes(LoadedObject& object, const Needs& needs, Skipped& skipped) {
@@ -124,7 +122,7 @@ Result<void> look_at_frame(LoadedScene& loaded, const scene::Scene& scene, doubl
   loaded.lights.clear();
   loaded.skipped.black_lights = loaded.skipped.lights_out_of_reach = 0;
   for (const scene::Light& light : *lights) {
-    if (is_black(light.colour)) {
+    if (scene::is_black(light.colour)) {
       ++loaded.skipped.black_lights;
     } else if (!reaches(light, loaded.hierarchy)) {
       ++loaded.skipped.lights_out_of_reach;

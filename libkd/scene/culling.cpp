@@ -189,7 +189,7 @@ struct Sweep {
 };
 
 std::optional<Sweep> shadow_rays(const Light& light, const Box3d& seen) {
-  if (light.colour.x == 0 && light.colour.y == 0 && light.colour.z == 0) return std::nullopt;
+  if (is_black(light.colour)) return std::nullopt;
   const Box3d lit = lit_part(light, seen);
   if (lit.empty()) return std::nullopt;
   if (light.kind == LightKind::directional) return Sweep{lit, -light.direction, -light.direction, kInfinity};

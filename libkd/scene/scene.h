@@ -63,6 +63,8 @@ struct LightKey {
   std::optional<Vec3f> colour;
 };
 
+inline bool is_black(Vec3f colour) { return colour.x == 0 && colour.y == 0 && colour.z == 0; }
+
 struct Light {
   LightKind kind = LightKind::point;
   Vec3d position{0, 0, 0};    // scene space; of a point or spot light

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "common/console.h"
+#include "common/layout.h"
 #include "image/compare.h"
 #include "image/heatmap.h"
 #include "image/png.h"
@@ -59,7 +60,7 @@ Result<render::RenderSettings> settings_of(const RenderOptions& o, const scene::
   settings.preview = !o.preview.empty();
   settings.gamma = o.gamma;
   settings.gamma_on_film = o.gamma_on_exr;
-  if (o.layout != "auto") settings.layout = o.layout == "compact" ? TriangleLayout::compact : TriangleLayout::expanded;
+  settings.layout = layout_named(o.layout);  // auto: none
   if (!o.crop.empty()) {
     auto crop = parse_crop(o.crop, film);
     if (!crop) return crop.error();
