@@ -28,6 +28,7 @@ struct Box3 {
 };
 
 using Box3d = Box3<double>;
+using Box3f = Box3<float>;
 using Box3u = Box3<uint32_t>;
 
 }  // namespace kd

@@ -67,9 +67,8 @@ struct LoadedScene {
   Vec3f background;
   Skipped skipped;
 
-  /// Whether the scene places no more than one, which needs no hierarchy. Not whether only one is loaded: the
-  /// hierarchy's boxes are part of what a ray meets, and what is left out must change nothing.
-  bool is_one_instance() const { return instances.size() == 1 && skipped.instances == 0; }
+  /// Which needs no hierarchy.
+  bool is_one_instance() const { return instances.size() == 1; }
 };
 
 /// A still picture.

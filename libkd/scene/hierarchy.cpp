@@ -40,8 +40,6 @@ struct Reach {
     return way[i + 3] * 0.5 - way[i] * 0.5;
   }
   Vec3d centre() const { return {centre(0), centre(1), centre(2)}; }
-  Vec3d lo() const { return {-way[0], -way[1], -way[2]}; }
-  Vec3d hi() const { return {way[3], way[4], way[5]}; }
 };
 
 struct Entry {
@@ -138,10 +136,9 @@ Cut best_cut(const Bins& bins) {
 class HierarchyBuilder {
  public:
   HierarchyBuilder(std::span<const Instance> instances, std::span<HierarchyNode> nodes)
-      : entries_(instances.size()), nodes_(nodes) {
+      : instances_(instances), entries_(instances.size()), nodes_(nodes) {
     parallel_ranges(instances.size(), kBinGrain, [&](size_t begin, size_t end) {
-      for (size_t i = begin; i < end; ++i)
-        entries_[i] = {Reach(widened(instances[i].box_scene)), static_cast<uint32_t>(i)};
+      for (size_t i = begin; i < end; ++i) entries_[i] = {Reach(instances[i].box_scene), static_cast<uint32_t>(i)};
     });
   }
 
@@ -160,6 +157,7 @@ class HierarchyBuilder {
   template <class IsLeft>
   size_t partition(const Task& task, Box3d& left, Box3d& right, const IsLeft& is_left);
 
+  std::span<const Instance> instances_;
   HugeArray<Entry> entries_;
   std::span<HierarchyNode> nodes_;
 };
@@ -167,8 +165,9 @@ class HierarchyBuilder {
 void HierarchyBuilder::build(const Task& task) {
   HierarchyNode& node = nodes_[task.slot];
   if (task.count() == 1) {
-    const Entry& entry = entries_[task.begin];
-    node = {entry.reach.lo(), entry.reach.hi(), entry.instance, 1};
+    const uint32_t instance = entries_[task.begin].instance;
+    const Box3f box = leaf_box(instances_[instance].box_scene);
+    node = {box.lo, instance, box.hi, 1};
     return;
   }
   Box3d left_centres, right_centres;
@@ -188,9 +187,9 @@ void HierarchyBuilder::build(const Task& task) {
     build(left);
     build(right);
   }
-  Box3d box{nodes_[child].lo, nodes_[child].hi};
-  box.extend(Box3d{nodes_[child + 1].lo, nodes_[child + 1].hi});
-  node = {box.lo, box.hi, child, 0};
+  Box3f box = nodes_[child].box();
+  box.extend(nodes_[child + 1].box());
+  node = {box.lo, child, box.hi, 0};
 }
 
 /// Reorders the task's leaves so that those of the left half come first, and returns where the right ones begin. The
@@ -289,11 +288,16 @@ size_t HierarchyBuilder::halve(const Task& task, Box3d& left, Box3d& right) {
 
 }  // namespace
 
-Box3d widened(const Box3d& box) {
-  const auto margin = [](double c) { return 1e-12 * std::fabs(c) + std::numeric_limits<double>::min(); };
-  const Vec3d lo = box.lo, hi = box.hi;
-  return {{lo.x - margin(lo.x), lo.y - margin(lo.y), lo.z - margin(lo.z)},
-          {hi.x + margin(hi.x), hi.y + margin(hi.y), hi.z + margin(hi.z)}};
+Box3f leaf_box(const Box3d& box_scene) {
+  constexpr float kMax = std::numeric_limits<float>::max(), kInfinity = std::numeric_limits<float>::infinity();
+  const auto up = [](double x) { return x > kMax ? kInfinity : x < -kMax ? -kMax : rounded_up(x); };
+  Box3f box;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double lo = box_scene.lo[axis], hi = box_scene.hi[axis], wider = 0x1p-23 * (hi - lo);
+    box.lo.set(axis, -up(-(lo - wider - 1e-12 * std::fabs(lo))));
+    box.hi.set(axis, up(hi + wider + 1e-12 * std::fabs(hi)));
+  }
+  return box;
 }
 
 void build_hierarchy(std::span<const Instance> instances, std::span<HierarchyNode> nodes) {

@@ -17,9 +17,10 @@ constexpr size_t hierarchy_size(size_t instances) { return instances == 0 ? 0 : 
 /// As build_hierarchy of instances.h, into `nodes`, which has room for all. May throw std::bad_alloc.
 void build_hierarchy(std::span<const Instance> instances, std::span<HierarchyNode> nodes);
 
-/// The box that a leaf has around this one: wider by 1e-12 of its coordinates. Growing with the box, so that the union
-/// of widened boxes is the widened union.
-Box3d widened(const Box3d& box);
+/// The box of a leaf: holds all that a ray may meet of an instance with this box. That is its object's cube widened by
+/// 2^-24 of itself, which is where snapping may take a ray (core/lattice_ray.h), and what placing rounds, 1e-12 of the
+/// coordinates; rounded outwards to float32, infinite where it leaves that range.
+Box3f leaf_box(const Box3d& box_scene);
 
 /// Refits the boxes above instances that moved, and knows by how much that has made the hierarchy worse.
 class Refitter {

@@ -21,7 +21,7 @@ static_assert(hierarchy_size(kMaxInstances) <= 1u << 27);
 
 /// Limited to eight times the root's as built: what grew by more has long been found bad.
 int64_t Refitter::surface(const HierarchyNode& node) const {
-  const double units = half_area(node.hi - node.lo) / unit_;
+  const double units = half_area(vec_cast<double>(node.hi) - vec_cast<double>(node.lo)) / unit_;
   return static_cast<int64_t>(units < kMaxUnits ? units : kMaxUnits);
 }
 
@@ -29,7 +29,7 @@ Refitter::Refitter(std::span<const HierarchyNode> nodes)
     : parents_(nodes.size()), leaves_((nodes.size() + 1) / 2), pending_(nodes.size(), 0) {
   if (nodes.empty()) return;
   parents_[0] = kNoParent;
-  const double root = half_area(nodes[0].hi - nodes[0].lo);
+  const double root = half_area(vec_cast<double>(nodes[0].hi) - vec_cast<double>(nodes[0].lo));
   if (std::isnormal(root / kUnits)) unit_ = root / kUnits;
   std::atomic<int64_t> sum = 0;
   parallel_ranges(nodes.size(), kNodeGrain, [&](size_t begin, size_t end) {
@@ -66,7 +66,7 @@ void Refitter::refit(std::span<HierarchyNode> nodes, std::span<const Instance> i
     int64_t added = 0;
     for (size_t i = begin; i < end; ++i) {
       const uint32_t leaf = leaves_[moved[i]];
-      const Box3d box = widened(instances[moved[i]].box_scene);
+      const Box3f box = leaf_box(instances[moved[i]].box_scene);
       nodes[leaf].lo = box.lo;
       nodes[leaf].hi = box.hi;
       climb(nodes, leaf, added);
@@ -80,9 +80,8 @@ void Refitter::climb(std::span<HierarchyNode> nodes, uint32_t leaf, int64_t& add
   uint32_t parent = parents_[leaf];
   while (parent != kNoParent && std::atomic_ref(pending_[parent]).fetch_sub(1, std::memory_order_acq_rel) == 1) {
     HierarchyNode& node = nodes[parent];
-    const HierarchyNode &a = nodes[node.first], &b = nodes[node.first + 1];
-    Box3d box{a.lo, a.hi};
-    box.extend(Box3d{b.lo, b.hi});
+    Box3f box = nodes[node.first].box();
+    box.extend(nodes[node.first + 1].box());
     added -= surface(node);
     node.lo = box.lo;
     node.hi = box.hi;

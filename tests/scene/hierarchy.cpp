@@ -32,7 +32,7 @@ std::vector<Instance> random_boxes(size_t count, double size, double far = 0) {
   });
 }
 
-bool holds(const HierarchyNode& node, const Box3d& box) {
+bool holds(const HierarchyNode& node, const auto& box) {
   bool inside = true;
   for (int axis = 0; axis < 3; ++axis)
     inside = inside && node.lo[axis] <= box.lo[axis] && node.hi[axis] >= box.hi[axis];
@@ -53,7 +53,7 @@ std::string fault_of(std::span<const HierarchyNode> nodes, std::span<const Insta
     }
     if (node.first <= i || node.first + 1 >= nodes.size()) return "child";
     for (const uint32_t child : {node.first, node.first + 1}) {
-      if (!holds(node, {nodes[child].lo, nodes[child].hi})) return "inner box";
+      if (!holds(node, nodes[child].box())) return "inner box";
       depth[child] = depth[i] + 1;
     }
   }
@@ -68,7 +68,7 @@ bool same_bytes(std::span<const T> a, std::span<const T> b) {
 double surface(std::span<const HierarchyNode> nodes) {
   double sum = 0;
   for (const HierarchyNode& n : nodes) {
-    const Vec3d e = n.hi - n.lo;
+    const Vec3d e = vec_cast<double>(n.hi) - vec_cast<double>(n.lo);
     if (!n.is_leaf) sum += e.x * e.y + e.y * e.z + e.z * e.x;
   }
   return sum;
@@ -173,23 +173,86 @@ TEST_CASE("hierarchy: refitting gives the boxes of a build, and knows what it co
   // No box is larger than the union of what is below it: all of them are right, not only large enough.
   for (const HierarchyNode& n : first) {
     if (n.is_leaf) {
-      CHECK(n.lo == widened(instances[n.first].box_scene).lo);
+      CHECK(n.box() == leaf_box(instances[n.first].box_scene));
       continue;
     }
-    Box3d both{first[n.first].lo, first[n.first].hi};
-    both.extend(Box3d{first[n.first + 1].lo, first[n.first + 1].hi});
-    if (!(both == Box3d{n.lo, n.hi})) FAIL("loose box");
+    Box3f both = first[n.first].box();
+    both.extend(first[n.first + 1].box());
+    if (!(both == n.box())) FAIL("loose box");
   }
 }
 
-TEST_CASE("hierarchy: the union of widened boxes is the widened union") {
+TEST_CASE("hierarchy: a ray's test of a box leaves out none that it passes, and hardly any other") {
+  std::mt19937_64 random(11);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  const auto vector = [&] { return Vec3d{unit(random), unit(random), unit(random)}; };
+  int passed = 0, missed = 0, for_nothing = 0;
+  for (int i = 0; i < 400000; ++i) {
+    const double scale = std::pow(10, 12 * unit(random)), away = scale * std::pow(10, 3 * std::max(unit(random), 0.0));
+    const Vec3d centre = vector() * away, half = vector() * scale;
+    Box3d box;
+    box.extend(centre - half);
+    box.extend(centre + half);
+    const Box3f rounded = leaf_box(box);
+    const HierarchyNode node{rounded.lo, 0, rounded.hi, 1};
+    Ray ray{centre + vector() * (3 * scale), vector(), 0, 1e300};
+    if (i % 2 == 0) ray.direction = (centre + half * unit(random) - ray.origin) * (1 / scale);
+    if (i % 3 == 0) ray.direction.set(i % 9 / 3, 0.0);
+    if (i % 5 == 0) ray.direction.set(i % 15 / 5, unit(random) * std::pow(10, 40 * unit(random) - 41));
+    if (i % 7 == 0) ray.origin.set(i % 21 / 7, box.lo[i % 21 / 7]);
+    ray.direction = ray.direction * std::pow(10, 6 * unit(random));
+    // Where the ray is in the box, by long double. 64 bits are enough: `edge` is what the last of them may move.
+    long double enter = 0, leave = ray.t_max, edge = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const long double o = ray.origin[axis], d = ray.direction[axis];
+      if (d == 0) {
+        if (o < box.lo[axis] || o > box.hi[axis]) leave = -1;
+        continue;
+      }
+      const long double t0 = (box.lo[axis] - o) / d, t1 = (box.hi[axis] - o) / d;
+      enter = std::max(enter, std::min(t0, t1));
+      leave = std::min(leave, std::max(t0, t1));
+      edge = std::max(edge, (std::fabs(o) + std::fabs(static_cast<long double>(centre[axis])) + scale) / std::fabs(d));
+    }
+    const Passage passage = BoxTest(ray, node).pass(node, rounded_up(ray.t_max));
+    if (enter <= leave) {
+      ++passed;
+      if (!passage.passes()) FAIL("a box that the ray passes is left out");
+      if (passage.enter > enter || passage.leave < leave) FAIL("entered late or left early");
+    } else {
+      ++missed;
+      for_nothing += leave >= 0 && enter - leave > 0x1p-19l * edge && passage.passes();
+    }
+  }
+  CHECK(passed > 50000);
+  CHECK(missed > 50000);
+  CHECK(for_nothing == 0);
+}
+
+TEST_CASE("hierarchy: boxes and rays beyond float32's range are let through") {
+  for (const double far : {1e39, 1e100, 1e200}) {
+    const Box3f box = leaf_box({{far, -far, -1}, {far * 2, far, 1}});
+    const HierarchyNode node{box.lo, 0, box.hi, 1};
+    CHECK(box.hi.x == std::numeric_limits<float>::infinity());
+    CHECK(box.lo.y == -std::numeric_limits<float>::infinity());
+    for (const double from : {0.0, far, -far}) {
+      for (const double speed : {1e-200, 1.0, 1e200}) {
+        const Ray ray{{from, 0, 0}, {speed, 0, speed * 1e-300}, 0, 1e300};
+        CHECK(BoxTest(ray, node).pass(node, rounded_up(ray.t_max)).passes());
+      }
+    }
+  }
+}
+
+TEST_CASE("hierarchy: a leaf's box is as little wider as float32 allows") {
   std::mt19937_64 random(2);
-  std::uniform_real_distribution<double> exponent(-300, 300);
+  std::uniform_real_distribution<double> unit(-1, 1);
   for (int i = 0; i < 100000; ++i) {
-    const double a = std::pow(10, exponent(random)) * (i % 2 ? 1 : -1);
-    const double b = i % 3 ? std::nextafter(a, 1e308) : a * 1.0000001;
-    const auto lo = [](double x) { return widened({{x, 0, 0}, {x, 0, 0}}).lo.x; };
-    const auto hi = [](double x) { return widened({{x, 0, 0}, {x, 0, 0}}).hi.x; };
-    if (std::min(lo(a), lo(b)) != lo(std::min(a, b)) || std::max(hi(a), hi(b)) != hi(std::max(a, b))) FAIL(a);
+    const double lo = unit(random) * std::pow(10, 30 * unit(random));
+    const double extent = std::fabs(lo) * std::pow(10, 6 * unit(random)), hi = lo + extent;
+    const Box3f box = leaf_box({{lo, lo, lo}, {hi, hi, hi}});
+    const double least = 0x1p-24 * extent, most = 0x1p-22 * (std::fabs(lo) + std::fabs(hi) + extent);
+    if (!(box.lo.x <= lo - least && box.hi.x >= hi + least)) FAIL("too small");
+    if (!(box.lo.x >= lo - most && box.hi.x <= hi + most)) FAIL("too large");
   }
 }

@@ -60,7 +60,7 @@ PlacedScene placed(const Scene& scene, double frame) {
 
 /// Leaves hold their instances and inner nodes their children.
 bool is_conservative(const PlacedScene& scene) {
-  const auto holds = [](const HierarchyNode& n, const Box3d& b) {
+  const auto holds = [](const HierarchyNode& n, const auto& b) {
     return n.lo.x <= b.lo.x && n.lo.y <= b.lo.y && n.lo.z <= b.lo.z && n.hi.x >= b.hi.x && n.hi.y >= b.hi.y &&
            n.hi.z >= b.hi.z;
   };
@@ -68,8 +68,7 @@ bool is_conservative(const PlacedScene& scene) {
   for (const HierarchyNode& n : nodes) {
     if (n.is_leaf) {
       if (!holds(n, scene.instances()[n.first].box_scene)) return false;
-    } else if (!holds(n, {nodes[n.first].lo, nodes[n.first].hi}) ||
-               !holds(n, {nodes[n.first + 1].lo, nodes[n.first + 1].hi})) {
+    } else if (!holds(n, nodes[n.first].box()) || !holds(n, nodes[n.first + 1].box())) {
       return false;
     }
   }

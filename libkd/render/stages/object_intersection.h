@@ -44,28 +44,46 @@ struct ThroughHierarchy {
   using Sides = BothSides;
   using Shadows = ThroughHierarchy;  // what shadow rays go through
 
+  struct Postponed {
+    uint32_t node;
+    float enter;
+  };
+
   template <class Visit>
   KD_HD static void for_each(const SceneView& scene, const Ray& ray, const double& t_limit, const Visit& visit) {
     if (scene.instance_count == 0) return;
-    const Vec3d inverse = inverse_direction(ray.direction);
-    uint32_t stack[kMaxHierarchyDepth + 1];
+    HierarchyNode node = load(scene.hierarchy);
+    const BoxTest test(ray, node);
+    float limit = rounded_up(t_limit);
+    if (!test.pass(node, limit).passes()) return;
+    Postponed stack[kMaxHierarchyDepth];
     int open = 0;
-    if (const Passage p = pass_box(scene.hierarchy[0], ray.origin, inverse, ray.t_min, t_limit); p.enter > p.leave)
-      return;
-    stack[open++] = 0;
-    while (open > 0) {
-      const HierarchyNode& node = scene.hierarchy[stack[--open]];
-      if (node.is_leaf) {
-        if (!visit(node.first)) return;
-        continue;
+    const auto resume = [&] {
+      do {
+        if (open == 0) return false;
+        --open;
+      } while (stack[open].enter > limit);
+      node = load(scene.hierarchy + stack[open].node);
+      return true;
+    };
+    while (true) {
+      // On a GPU all lanes of a warp look for an instance, and then visit theirs together.
+      while (!node.is_leaf) {
+        const uint32_t first = node.first;
+        const HierarchyNode a = load(scene.hierarchy + first), b = load(scene.hierarchy + first + 1);
+        const Passage to_a = test.pass(a, limit), to_b = test.pass(b, limit);
+        const bool a_first = to_a.passes() && (!to_b.passes() || to_a.enter <= to_b.enter);
+        if (to_a.passes() && to_b.passes())
+          stack[open++] = a_first ? Postponed{first + 1, to_b.enter} : Postponed{first, to_a.enter};
+        if (to_a.passes() || to_b.passes()) {
+          node = a_first ? a : b;
+        } else if (!resume()) {
+          return;
+        }
       }
-      const Passage a = pass_box(scene.hierarchy[node.first], ray.origin, inverse, ray.t_min, t_limit);
-      const Passage b = pass_box(scene.hierarchy[node.first + 1], ray.origin, inverse, ray.t_min, t_limit);
-      const bool a_first = a.enter <= b.enter;
-      const Passage near = a_first ? a : b, far = a_first ? b : a;
-      const uint32_t near_child = node.first + (a_first ? 0u : 1u), far_child = node.first + (a_first ? 1u : 0u);
-      if (far.enter <= far.leave) stack[open++] = far_child;
-      if (near.enter <= near.leave) stack[open++] = near_child;
+      if (!visit(node.first)) return;
+      limit = rounded_up(t_limit);
+      if (!resume()) return;
     }
   }
 };
