@@ -25,11 +25,11 @@ double cpu_seconds() {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
-/// Seconds of work between two questions: sanitizers take some times as long.
+/// Seconds of work between two questions: 0.1 on a core of its own; sanitizers, and neighbours on the core, take longer.
 #if defined(__SANITIZE_ADDRESS__)
 constexpr double kLongest = 0.4;
 #else
-constexpr double kLongest = 0.1;
+constexpr double kLongest = 0.2;
 #endif
 
 /// A rugged sheet of 2 side^2 triangles, in every format. Its file's name.
