@@ -106,12 +106,20 @@ class Sweep {
   ScaleRun run_;
 };
 
-Result<void> sweep_library(Sweep& sweep, const Reach& reach) {
+Result<void> sweep_library(Sweep& sweep, const Quarry& quarry, const Reach& reach) {
   const auto listed = [](uint64_t count) { return static_cast<uint32_t>(count); };
   const std::vector<uint64_t> counts = decades(kStones, reach.objects);
   auto done = sweep.series(
       {"library", "Objects that the scene lists; ten instances of ten of them, in view", "listed", {}}, counts, listed,
       [](scene::Scene& scene, uint64_t) { add_wall(scene, kStones, Place::in_view, 0, kStones); });
+  if (!done) return done;
+  done = sweep.series(
+      {"folder", "Objects in the library's folder; ten instances of ten of them, in view", "in the folder", {}}, counts,
+      listed, [&](scene::Scene& scene, uint64_t) {
+        scene.library = quarry.folder();
+        scene.objects.resize(kStones);
+        add_wall(scene, kStones, Place::in_view, 0, kStones);
+      });
   if (!done) return done;
   return sweep.series({"unseen_objects",
                        "Objects that are placed; ten of them in view, the others where nobody sees them",
@@ -183,7 +191,7 @@ Result<void> measure(const Options& o) {
   }
   const Reach reach = o.quick ? kQuick : kFull;
   Sweep sweep(o, *device, *quarry, scratch->path(), *size);
-  if (auto done = sweep_library(sweep, reach); !done) return done;
+  if (auto done = sweep_library(sweep, *quarry, reach); !done) return done;
   if (auto done = sweep_instances(sweep, reach); !done) return done;
   if (auto done = sweep_lights(sweep); !done) return done;
   if (auto done = sweep.motion(reach.instances, reach.moving); !done) return done;

@@ -12,6 +12,7 @@ PANELS = [
     ("picture", "instances in view", ["parse", "load", "hierarchy", "frame"]),
     ("unseen_instances", "instances out of view; 100 in view", ["parse", "load", "hierarchy", "frame"]),
 ]
+TABLES = ["library", "folder", "unseen_objects", "picture", "unseen_instances"]
 LIGHTS = [("lights_lit", "lit", "#c2571a"), ("lights_black", "black", "#333333"), ("lights_behind", "behind", "#1f6f8b")]
 
 
@@ -91,7 +92,8 @@ def main():
         if path.exists():
             report = json.loads(path.read_text())
             plot(report, f"scale-{device}")
-            tables = [scenes_table(report, series) for series, _, _ in PANELS] + [lights_table(report), motion_table(report)]
+            measured = [s["name"] for s in report["series"]]  # a report may be of a version that had fewer
+            tables = [scenes_table(report, series) for series in TABLES if series in measured] + [lights_table(report), motion_table(report)]
             body = (f"{report['device']}; {report['machine']['processor']}, {report['threads']} threads; "
                     f"{report['film']['width']} x {report['film']['height']}, medians of {report['repeats']}.\n\n"
                     f"![Cost against size](scale-{device}.svg)\n\n" + "\n\n".join(tables))

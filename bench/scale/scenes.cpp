@@ -53,7 +53,7 @@ Result<Quarry> Quarry::open(const std::string& folder) {
   if (auto written = write_file(path(std::string(forest::kLibraryName)), forest::library_text()); !written)
     return written.error();
   for (uint32_t i = 0; i < kStones; ++i) {
-    const std::string mesh = path(fmt::format("stone{}.obj", i)), object = path(fmt::format("{}.nkd", i));
+    const std::string mesh = path(fmt::format("stone{}.obj", i)), object = path(fmt::format("stone{}.nkd", i));
     if (auto written = write_file(mesh, forest::make_rock(kCells, 3 * i).text("stone")); !written)
       return written.error();
     if (auto built = tools::build_object(mesh, object, {}); !built) return built.error();
@@ -64,14 +64,14 @@ Result<Quarry> Quarry::open(const std::string& folder) {
 Result<std::vector<scene::SceneObject>> Quarry::objects(uint32_t count) const {
   std::vector<scene::SceneObject> objects;
   for (uint32_t i = 0; i < count; ++i) {
-    const std::string file = fmt::format("{}/{}.nkd", folder_, i);
+    const std::string name = fmt::format("stone{}", i), file = scene::library_file(folder_, name);
     std::error_code failure;
     if (!fs::exists(file, failure)) {
       // Copies, not links: each has pages of its own to be read.
-      fs::copy_file(fmt::format("{}/{}.nkd", folder_, i % kStones), file, failure);
+      fs::copy_file(scene::library_file(folder_, fmt::format("stone{}", i % kStones)), file, failure);
       if (failure) return Error{ErrorClass::output, file, "cannot copy an object: " + failure.message()};
     }
-    objects.push_back({fmt::format("stone{}", i), file});
+    objects.push_back({name, file});
   }
   return objects;
 }

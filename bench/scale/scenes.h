@@ -21,6 +21,7 @@ class Quarry {
   static Result<Quarry> open(const std::string& folder);
   /// The first so many of objects that are files of their own; every tenth is the same stone. ErrorClass::output.
   Result<std::vector<scene::SceneObject>> objects(uint32_t count) const;
+  const std::string& folder() const { return folder_; }
 
  private:
   explicit Quarry(std::string folder) : folder_(std::move(folder)) {}

@@ -132,6 +132,13 @@ Rotation Reader::read_rotation(const scene_fb::Rotation& source, const Place& at
 uint32_t Reader::find_object(const flatbuffers::String& name, const Place& at) {
   const auto found = object_index_.find(name.str());
   if (found != object_index_.end()) return found->second;
+  if (!scene_.library.empty()) {
+    const auto index = static_cast<uint32_t>(scene_.objects.size());
+    const std::string clean = read_name(name, at);
+    object_index_.emplace(clean, index);
+    scene_.objects.push_back({clean, library_file(scene_.library, clean)});
+    return index;
+  }
   fail(at, fmt::format("there is no object '{}': {}", read_text(&name, at), known_names(scene_.objects, "objects")));
   return 0;
 }

@@ -152,8 +152,14 @@ struct Scene {
   Vec3f background{0, 0, 0};  // >= 0, as all colours; what a ray that meets nothing returns
   Vec3f ambient{0, 0, 0};
   std::vector<Light> lights;
-  std::vector<SceneObject> objects;
+  std::vector<SceneObject> objects;  // those that the scene file lists, then those of the library that parts place
+  std::string library;               // a folder; empty: none
   std::vector<Character> characters;
 };
+
+/// Where a library has the object of this name.
+inline std::string library_file(const std::string& library, const std::string& name) {
+  return library + "/" + name + ".nkd";
+}
 
 }  // namespace kd::scene

@@ -33,11 +33,7 @@ Result<Scene> Reader::read(const scene_fb::Scene& source) {
       scene_.lights.push_back(read_light(*light, Place{"lights", nullptr, scene_.lights.size()}));
     }
   }
-  for (const scene_fb::Object* object : *source.objects()) {
-    const Place at{"objects", nullptr, scene_.objects.size()};
-    scene_.objects.push_back(read_object(*object, at));
-  }
-  if (scene_.objects.empty()) fail("objects", "the scene has no objects: it needs at least one");
+  read_objects(source);
   name_characters(source);
   for (const scene_fb::Character* character : *source.characters()) {
     const Place at{"characters", nullptr, scene_.characters.size()};
@@ -62,11 +58,23 @@ void Reader::read_film(const scene_fb::Film& source) {
   }
 }
 
+void Reader::read_objects(const scene_fb::Scene& source) {
+  if (source.library()) scene_.library = from_folder(read_name(*source.library(), Place{"library"}));
+  if (source.objects()) {
+    for (const scene_fb::Object* object : *source.objects()) {
+      const Place at{"objects", nullptr, scene_.objects.size()};
+      scene_.objects.push_back(read_object(*object, at));
+    }
+  } else if (!source.library()) {
+    fail("", "the scene lacks 'objects', or a 'library'");
+  }
+  if (scene_.objects.empty() && !source.library()) fail("objects", "the scene has no objects: it needs at least one");
+}
+
 SceneObject Reader::read_object(const scene_fb::Object& source, const Place& at) {
   SceneObject object;
   object.name = read_name(*source.name(), at + ".name");
-  const std::string file = read_name(*source.file(), at + ".file");
-  object.file = file.starts_with('/') ? file : folder_ + file;
+  object.file = from_folder(read_name(*source.file(), at + ".file"));
   const auto index = static_cast<uint32_t>(scene_.objects.size());
   if (!object_index_.emplace(object.name, index).second) {
     fail(at + ".name", fmt::format("there are two objects '{}': rename one", object.name));

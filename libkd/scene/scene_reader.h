@@ -85,6 +85,9 @@ class Reader {
   Vec3d read_scale(const scene_fb::Vec3& source, const Place& at);
   void check_nesting();
   Material read_material(const scene_fb::Material& source, const Place& at);
+  /// `name`: of a file, as the scene has it.
+  std::string from_folder(const std::string& name) const { return name.starts_with('/') ? name : folder_ + name; }
+  void read_objects(const scene_fb::Scene& source);
   uint32_t find_object(const flatbuffers::String& name, const Place& at);
   uint32_t find_character(const flatbuffers::String& name, const Place& at);
 

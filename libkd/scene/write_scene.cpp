@@ -184,6 +184,10 @@ class Writer {
   template <class Moving>
   std::string motion(const Moving& moving);
   void put_light(const Light& light);
+  const std::string& name_of(const SceneObject& object) const {
+    return object_names_[static_cast<size_t>(&object - scene_.objects.data())];
+  }
+  void put_objects();
   void put_object(const SceneObject& object);
   void put_character(const Character& character);
   void put_part(const Part& part);
@@ -247,8 +251,28 @@ void Writer::put_light(const Light& light) {
   put("{}}}", motion(light));
 }
 
+void Writer::put_objects() {
+  std::vector<const SceneObject*> listed;
+  for (const SceneObject& object : scene_.objects) {
+    const bool in_library = !scene_.library.empty() && object.file == library_file(scene_.library, object.name) &&
+                            name_of(object) == object.name;
+    if (!in_library) listed.push_back(&object);
+  }
+  if (!scene_.library.empty()) {
+    const std::string folder = folder_of(fs::path(scene_.library) / "").lexically_relative(folder_of(path_)).string();
+    if (folder.empty() || clean_text(folder) != folder) {
+      fail("the name of the library's folder cannot be in a scene file: rename it");
+    }
+    put("  \"library\": {},\n", json_string(folder));
+    if (listed.empty()) return;
+  }
+  put("  \"objects\": [");
+  put_list(listed, "    ", [&](const SceneObject* object) { put_object(*object); });
+  put("\n  ],\n");
+}
+
 void Writer::put_object(const SceneObject& object) {
-  const std::string& name = object_names_[static_cast<size_t>(&object - scene_.objects.data())];
+  const std::string& name = name_of(object);
   const std::string file = relative_file(object.file, path_).string();
   if (file.empty() || clean_text(file) != file) {
     fail(fmt::format("the file name of object '{}' cannot be in a scene file: rename it", name));
@@ -286,9 +310,9 @@ Result<std::string> Writer::write() {
       motion(camera));
   put("  \"background\": {},\n  \"ambient\": {},\n  \"lights\": [", vector(scene_.background), vector(scene_.ambient));
   put_list(scene_.lights, "    ", [&](const Light& light) { put_light(light); });
-  put("{}],\n  \"objects\": [", scene_.lights.empty() ? "" : "\n  ");
-  put_list(scene_.objects, "    ", [&](const SceneObject& object) { put_object(object); });
-  put("\n  ],\n  \"characters\": [");
+  put("{}],\n", scene_.lights.empty() ? "" : "\n  ");
+  put_objects();
+  put("  \"characters\": [");
   put_list(scene_.characters, "    ", [&](const Character& character) { put_character(character); });
   put("\n  ]\n}}\n");
   if (error_) return *error_;

@@ -34,6 +34,12 @@ TEST_SUITE("kdbench scale") {
     CHECK(library[0]["bytes"]["objects"] == library[1]["bytes"]["objects"]);
     CHECK(library[0]["objects_opened"] == 10);
 
+    const auto& folder = series_of(report, "folder");
+    for (const auto& row : folder) {
+      CHECK(row["bytes"] == folder[0]["bytes"]);
+      CHECK(row["rays"] == library[0]["rays"]);
+    }
+
     const auto& unseen_objects = series_of(report, "unseen_objects");
     for (const char* cost : {"objects_opened", "rays"}) CHECK(unseen_objects[0][cost] == unseen_objects[1][cost]);
     for (const char* bytes : {"objects", "scene"}) {

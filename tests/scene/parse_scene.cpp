@@ -296,6 +296,36 @@ TEST_CASE("scene: texts that are no scene at all") {
   CHECK(error_of(std::string(kMaxSceneBytes + 1, ' ')) == "s:1:1: a scene has at most 134217728 bytes");
 }
 
+TEST_CASE("scene: with a library, what no object is named is a file in it, looked for once") {
+  const std::string objects = "\"objects\": [{\"name\": \"bay\", \"file\": \"compiled/bay.nkd\"}]";
+  const std::string parts = "{\"object\": \"bay\"}, {\"object\": \"trees/oak\"}, {\"object\": \"trees/oak\"}";
+  const std::string json = replaced(kSmallest, "{\"object\": \"bay\"}", parts);
+  const auto scene = parse_scene(replaced(json, objects, "\"library\": \"stones\", " + objects), "at/s");
+  REQUIRE_MESSAGE(scene, (scene ? "" : scene.error().line()));
+  REQUIRE(scene->objects.size() == 2);
+  CHECK(scene->objects[0].file == "at/compiled/bay.nkd");
+  CHECK(scene->objects[1].name == "trees/oak");
+  CHECK(scene->objects[1].file == "at/stones/trees/oak.nkd");
+  CHECK(scene->characters[0].parts[1].object == 1);
+  CHECK(scene->characters[0].parts[2].object == 1);
+
+  const auto all = parse_scene(replaced(json, objects, "\"library\": \"/stones\""), "at/s");
+  REQUIRE_MESSAGE(all, (all ? "" : all.error().line()));
+  REQUIRE(all->objects.size() == 2);
+  CHECK(all->objects[0].file == "/stones/bay.nkd");
+  CHECK(all->library == "/stones");
+
+  const auto error_of = [](const std::string& text) {
+    const auto bad = parse_scene(text, "s");
+    return bad ? std::string() : bad.error().line();
+  };
+  CHECK(error_of(replaced(kSmallest, objects, "\"library\": \"\"")).ends_with("'library' must not be empty"));
+  CHECK(error_of(replaced(kSmallest, objects + ",", "")) == "s:1:1: the scene lacks 'objects', or a 'library'");
+  CHECK(
+      error_of(replaced(replaced(kSmallest, objects, "\"library\": \"l\""), "\"object\": \"bay\"", "\"object\": \"\""))
+          .ends_with("'object' must not be empty"));
+}
+
 TEST_CASE("scene: a file that cannot be read is missing, not bad") {
   const auto scene = read_scene("/nonexistent/scene.json");
   REQUIRE(!scene);

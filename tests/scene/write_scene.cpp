@@ -214,6 +214,33 @@ TEST_CASE("write_scene: objects in other folders, and links to folders") {
   }
 }
 
+TEST_CASE("write_scene: a library stays one, and what it holds is not listed") {
+  const test::TempFolder folder;
+  std::filesystem::create_directories(folder.file("scenes"));
+  Scene s = full_scene(folder);
+  s.library = folder.file("stones");
+  s.objects = {{"oak", folder.file("stones/oak.nkd")}, {"cube", folder.file("cube.nkd")}};
+  Part oak, cube;
+  cube.object = 1;
+  s.characters = {{"", {oak, cube}}};
+  const Scene r = written_and_read(s, folder.file("scenes/a.json"));
+  const std::string text = text_of(folder.file("scenes/a.json"));
+  CHECK(text.find("\"library\": \"../stones\"") != std::string::npos);
+  CHECK(text.find("oak.nkd") == std::string::npos);
+  REQUIRE(r.objects.size() == 2);
+  for (size_t i : {0, 1}) {
+    const SceneObject& object = r.objects[r.characters[0].parts[i].object];
+    CHECK(object.name == s.objects[i].name);
+    CHECK(std::filesystem::path(object.file).lexically_normal() == s.objects[i].file);
+  }
+  // Nothing but the library.
+  s.objects.pop_back();
+  s.characters[0].parts.pop_back();
+  const Scene alone = written_and_read(s, folder.file("scenes/a.json"));
+  CHECK(text_of(folder.file("scenes/a.json")).find("\"objects\"") == std::string::npos);
+  CHECK(alone.objects.size() == 1);
+}
+
 TEST_CASE("write_scene: names that no scene can hold are replaced, and stay apart") {
   const test::TempFolder folder;
   Scene s = full_scene(folder);
