@@ -18,6 +18,7 @@ Command build_command(CLI::App& app);
 Command floor_command(CLI::App& app);
 Command forest_command(CLI::App& app);
 Command frame_command(CLI::App& app);
+Command instances_command(CLI::App& app);
 Command paper_command(CLI::App& app);
 Command pareto_command(CLI::App& app);
 Command scale_command(CLI::App& app);
