@@ -25,7 +25,8 @@ double cpu_seconds() {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
-/// Seconds of work between two questions: 0.1 on a core of its own; sanitizers, and neighbours on the core, take longer.
+/// Seconds of work between two questions: 0.1 on a core of its own; sanitizers, and neighbours on the core, take
+/// longer.
 #if defined(__SANITIZE_ADDRESS__)
 constexpr double kLongest = 0.4;
 #else
