@@ -1,10 +1,8 @@
 #include "embree_build.h"
 
-#include <algorithm>
-
-#include <embree3/rtcore.h>
 #include <fmt/format.h>
 
+#include "embree_mesh.h"
 #include "sys/timer.h"
 
 namespace kd::bench {
@@ -34,19 +32,9 @@ class Scene {
   /// Copies the mesh into buffers of Embree's.
   bool fill(std::span<const Vec3f> vertices, std::span<const std::array<uint32_t, 3>> triangles) {
     if (!device_) return false;
-    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-    void* v =
-        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3f), vertices.size());
-    void* t = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(uint32_t),
-                                      triangles.size());
-    if (v && t) {
-      std::copy(vertices.begin(), vertices.end(), static_cast<Vec3f*>(v));
-      std::copy(triangles.begin(), triangles.end(), static_cast<std::array<uint32_t, 3>*>(t));
-      rtcCommitGeometry(geometry);
-      rtcAttachGeometry(scene_, geometry);
-    }
-    rtcReleaseGeometry(geometry);
-    return v && t;
+    return attach_mesh(
+        device_, scene_, vertices.size(), [&](size_t i) { return vertices[i]; }, triangles.size(),
+        [&](size_t i) { return triangles[i]; });
   }
   bool commit() {
     rtcCommitScene(scene_);

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <embree3/rtcore.h>
+#include "embree_mesh.h"
 
 namespace kd::bench {
 
@@ -32,7 +32,7 @@ class Instances final : public EmbreeInstances {
 
   int error() const { return static_cast<int>(rtcGetDeviceError(device_)); }
 
-  std::optional<InstanceHit> closest(const Ray& ray) const override {
+  std::optional<float> closest(const Ray& ray) const override {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     RTCRayHit query{};
@@ -42,7 +42,7 @@ class Instances final : public EmbreeInstances {
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     rtcIntersect1(scene_, &context, &query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
-    return InstanceHit{query.ray.tfar, query.hit.instID[0]};
+    return query.ray.tfar;
   }
 
  private:
@@ -56,19 +56,13 @@ class Instances final : public EmbreeInstances {
   RTCScene scene_of(const nkd::Geometry& geometry) const {
     const PackedTriangles packed = geometry.packed();
     RTCScene scene = empty_scene();
-    RTCGeometry mesh = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-    const uint64_t vertex_count = geometry.vertex_count(), triangle_count = geometry.triangle_count();
-    auto* vertices = static_cast<Vec3f*>(
-        rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3f), vertex_count));
-    auto* triangles = static_cast<Vec3u*>(
-        rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(Vec3u), triangle_count));
-    if (vertices && triangles) {
-      for (uint64_t i = 0; i < vertex_count; ++i) vertices[i] = packed.position(i);
-      for (uint64_t i = 0; i < triangle_count; ++i) triangles[i] = packed.corners[i];
-      rtcCommitGeometry(mesh);
-      rtcAttachGeometry(scene, mesh);
-    }
-    rtcReleaseGeometry(mesh);
+    attach_mesh(
+        device_, scene, geometry.vertex_count(), [&](size_t i) { return packed.position(i); },
+        geometry.triangle_count(),
+        [&](size_t i) {
+          const Vec3u c = packed.corners[i];
+          return std::array{c.x, c.y, c.z};
+        });
     rtcCommitScene(scene);
     return scene;
   }

@@ -11,16 +11,11 @@
 
 namespace kd::bench {
 
-struct InstanceHit {
-  float t = 0;
-  uint32_t instance = 0;
-};
-
 class EmbreeInstances {
  public:
   virtual ~EmbreeInstances() = default;
-  /// The nearest hit, in float32. From any thread.
-  virtual std::optional<InstanceHit> closest(const Ray& ray) const = 0;
+  /// Distance of the nearest hit. From any thread.
+  virtual std::optional<float> closest(const Ray& ray) const = 0;
 };
 
 /// Vertices are lattice coordinates, which are exact in float32; instances take them to scene space. Triangles robust,

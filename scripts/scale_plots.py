@@ -93,7 +93,8 @@ def main():
             report = json.loads(path.read_text())
             plot(report, f"scale-{device}")
             measured = [s["name"] for s in report["series"]]  # a report may be of a version that had fewer
-            tables = [scenes_table(report, series) for series in TABLES if series in measured] + [lights_table(report), motion_table(report)]
+            tables = [scenes_table(report, series) for series in TABLES if series in measured]
+            tables += [lights_table(report), motion_table(report)]
             body = (f"{report['device']}; {report['machine']['processor']}, {report['threads']} threads; "
                     f"{report['film']['width']} x {report['film']['height']}, medians of {report['repeats']}.\n\n"
                     f"![Cost against size](scale-{device}.svg)\n\n" + "\n\n".join(tables))

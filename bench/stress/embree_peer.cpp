@@ -1,9 +1,8 @@
 #include "stress/embree_peer.h"
 
-#include <algorithm>
 #include <string>
 
-#include <embree3/rtcore.h>
+#include "embree_mesh.h"
 
 namespace kd::stress {
 
@@ -40,18 +39,9 @@ class EmbreePeer : public Peer {
     RTCScene scene = rtcNewScene(device_);
     rtcSetSceneFlags(scene, flags);
     rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
-    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* vertices = static_cast<Vec3f*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                                 sizeof(Vec3f), c.vertices.size()));
-    auto* triangles = static_cast<std::array<uint32_t, 3>*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(uint32_t), c.triangles.size()));
-    if (vertices && triangles) {
-      std::transform(c.vertices.begin(), c.vertices.end(), vertices, [](Vec3u v) { return vec_cast<float>(v); });
-      std::copy(c.triangles.begin(), c.triangles.end(), triangles);
-      rtcCommitGeometry(geometry);
-      rtcAttachGeometry(scene, geometry);
-    }
-    rtcReleaseGeometry(geometry);
+    bench::attach_mesh(
+        device_, scene, c.vertices.size(), [&](size_t i) { return vec_cast<float>(c.vertices[i]); }, c.triangles.size(),
+        [&](size_t i) { return c.triangles[i]; });
     rtcCommitScene(scene);
     return scene;
   }

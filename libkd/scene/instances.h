@@ -37,9 +37,8 @@ Result<std::vector<Instance>> place_instances(const Scene& scene, std::span<cons
 
 /// A tree of boxes over the instances: node 0 is the root, a leaf holds one instance, the two children of a node lie
 /// side by side and behind it. Split by the surface area heuristic over box centres, in bins; no deeper than
-/// kMaxHierarchyDepth. Empty for no instances. Boxes hold all that rays may meet of their
-/// instances, so which of them there are decides nothing but time. The same nodes for any number of threads. May throw
-/// std::bad_alloc.
+/// kMaxHierarchyDepth. Empty for no instances. Boxes hold all that rays may meet of their instances, so which of them
+/// there are decides nothing but time. The same nodes for any number of threads. May throw std::bad_alloc.
 std::vector<HierarchyNode> build_hierarchy(std::span<const Instance> instances);
 
 }  // namespace kd::scene
