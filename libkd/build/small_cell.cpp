@@ -4,8 +4,8 @@
 #include <span>
 
 #include "build/cost.h"
-#include "build/lanes.h"
 #include "build/split.h"
+#include "core/lanes.h"
 
 namespace kd::build {
 
@@ -112,7 +112,7 @@ Split choose_split(const Context& context, const CellCosts& costs, const Box3u& 
     const LaneCosts lane_costs(costs, PlaneProbability(cell, axis, context.step), cell, axis);
     const Candidates candidates(lo, hi, n, lane_costs.lo, lane_costs.hi);
     for (size_t c = 0; c < candidates.count; c += kLanes) {
-      const Ints plane = load(candidates.planes + c);
+      const Ints plane = load_lanes(candidates.planes + c);
       Ints below{}, above{};
       for (size_t i = 0; i < n; ++i) {
         below -= splat(lo[i]) < plane;

@@ -24,12 +24,14 @@ struct alignas(16) HierarchyNode {
 
 constexpr int kMaxHierarchyDepth = 64;
 
-/// Distances at which a ray enters and leaves a box. Where either is NaN the ray counts as passing.
+/// Distances at which a ray enters and leaves a box. Where either is NaN the ray counts as passing. Real is float, or
+/// a packet's (core/packet.h).
+template <class Real>
 struct Passage {
-  float enter;
-  float leave;
+  Real enter;
+  Real leave;
 
-  KD_HD KD_INLINE bool passes() const { return !(enter > leave); }
+  KD_HD KD_INLINE auto passes() const { return !(enter > leave); }
 };
 
 /// A ray against boxes within some bounds: never enters a box later, nor leaves it earlier, than the ray in exact
@@ -40,45 +42,51 @@ struct Passage {
 /// and to the sum is at most 2e (P + |o|) / |d|, to terms of e; twice that, 2^-22 (P + |o|) / |d|, is subtracted from
 /// the offset for planes that the ray enters by and added for those it leaves by. (Underflow: 2^-146 more.) A component
 /// of the direction of less than 2^-60 of the largest counts as that much, which moves no point within the bounds by as
-/// much as that margin.
-class BoxTest {
- public:
-  /// `bounds`: holds all boxes.
-  KD_HD KD_INLINE BoxTest(const Ray& ray, const HierarchyNode& bounds)
-      : t_min_(-rounded_up(-ray.t_min)),
-        rising_x_(ray.direction.x >= 0),
-        rising_y_(ray.direction.y >= 0),
-        rising_z_(ray.direction.z >= 0) {
-    const Vec3d d = ray.direction;
-    const double least = 0x1p-60 * max_of(std::fabs(d.x), std::fabs(d.y), std::fabs(d.z));
-    const auto set = [&](int axis) {
-      const double o = ray.origin[axis], inverse = 1 / std::copysign(max_of(std::fabs(d[axis]), least), d[axis]);
-      const float extent = largest_of(std::fabs(bounds.lo[axis]), std::fabs(bounds.hi[axis]));
-      const double margin = (extent + std::fabs(o)) * (0x1p-22 * std::fabs(inverse) + 0x1p-146) + 0x1p-146;
-      inverse_.set(axis, static_cast<float>(inverse));
-      enter_.set(axis, static_cast<float>(-o * inverse - margin));
-      leave_.set(axis, static_cast<float>(-o * inverse + margin));
+/// much as that margin. Real is float, or
+/// a packet's for rays that rise along the same axes (core/packet.h).
+template <class Real>
+struct BoxTest {
+  Vec3<Real> inverse, enter, leave;
+  Real t_min;
+  bool rising_x, rising_y, rising_z;
+
+  KD_HD KD_INLINE Passage<Real> pass(const HierarchyNode& node, Real t_limit) const {
+    const Vec3f first{rising_x ? node.lo.x : node.hi.x, rising_y ? node.lo.y : node.hi.y,
+                      rising_z ? node.lo.z : node.hi.z};
+    const Vec3f last{rising_x ? node.hi.x : node.lo.x, rising_y ? node.hi.y : node.lo.y,
+                     rising_z ? node.hi.z : node.lo.z};
+    const auto distance = [](float plane, Real per_unit, Real offset) {
+      using std::fma;
+      return fma(Real(plane), per_unit, offset);
     };
-    set(0);
-    set(1);
-    set(2);
+    return {largest_of(largest_of(distance(first.x, inverse.x, enter.x), distance(first.y, inverse.y, enter.y)),
+                       largest_of(distance(first.z, inverse.z, enter.z), t_min)),
+            least_of(least_of(distance(last.x, inverse.x, leave.x), distance(last.y, inverse.y, leave.y)),
+                     least_of(distance(last.z, inverse.z, leave.z), t_limit))};
   }
-
-  KD_HD KD_INLINE Passage pass(const HierarchyNode& node, float t_limit) const {
-    const Vec3f first{rising_x_ ? node.lo.x : node.hi.x, rising_y_ ? node.lo.y : node.hi.y,
-                      rising_z_ ? node.lo.z : node.hi.z};
-    const Vec3f last{rising_x_ ? node.hi.x : node.lo.x, rising_y_ ? node.hi.y : node.lo.y,
-                     rising_z_ ? node.hi.z : node.lo.z};
-    return {largest_of(largest_of(std::fma(first.x, inverse_.x, enter_.x), std::fma(first.y, inverse_.y, enter_.y)),
-                       largest_of(std::fma(first.z, inverse_.z, enter_.z), t_min_)),
-            least_of(least_of(std::fma(last.x, inverse_.x, leave_.x), std::fma(last.y, inverse_.y, leave_.y)),
-                     least_of(std::fma(last.z, inverse_.z, leave_.z), t_limit))};
-  }
-
- private:
-  Vec3f inverse_, enter_, leave_;
-  float t_min_;
-  bool rising_x_, rising_y_, rising_z_;
 };
+
+/// Of one ray; `bounds` holds all boxes.
+KD_HD KD_INLINE BoxTest<float> box_test(const Ray& ray, const HierarchyNode& bounds) {
+  BoxTest<float> test;
+  test.t_min = -rounded_up(-ray.t_min);
+  test.rising_x = ray.direction.x >= 0;
+  test.rising_y = ray.direction.y >= 0;
+  test.rising_z = ray.direction.z >= 0;
+  const Vec3d d = ray.direction;
+  const double largest = max_of(std::fabs(d.x), std::fabs(d.y), std::fabs(d.z)), least = 0x1p-60 * largest;
+  const auto set = [&](int axis) {
+    const double o = ray.origin[axis], per_unit = 1 / std::copysign(max_of(std::fabs(d[axis]), least), d[axis]);
+    const float extent = largest_of(std::fabs(bounds.lo[axis]), std::fabs(bounds.hi[axis]));
+    const double margin = (extent + std::fabs(o)) * (0x1p-22 * std::fabs(per_unit) + 0x1p-146) + 0x1p-146;
+    test.inverse.set(axis, static_cast<float>(per_unit));
+    test.enter.set(axis, static_cast<float>(-o * per_unit - margin));
+    test.leave.set(axis, static_cast<float>(-o * per_unit + margin));
+  };
+  set(0);
+  set(1);
+  set(2);
+  return test;
+}
 
 }  // namespace kd

@@ -65,11 +65,63 @@ KD_HD KD_INLINE int edge_side(double edge, double px, double py, double qx, doub
 
 /// A vertex relative to the ray and sheared along it, so that the ray is x = y = 0; `along` is its coordinate on the
 /// ray's axis, not yet turned into a distance by the direction's sign.
-template <class T>
+template <class T, class Real>
 struct Sheared {
   T x, y;
-  float along;
+  Real along;
 };
+
+/// The plane across a ray's axis, and what float32 can tell in it. Real is float, or a packet's for rays that share an
+/// axis (core/packet.h).
+template <class Real>
+struct Shear {
+  Vec3<Real> origin;
+  Real slope_x, slope_y;  // what x and y lose for each step along the axis, negated
+  bool along_x, along_y;  // the axis; where both are false it is z
+
+  /// In float32 each sheared coordinate is off by one rounding of itself, in double it is exact: v - origin is exact in
+  /// float32, and 24 bits of slope times 24 bits of distance fit.
+  template <class T>
+  KD_HD KD_INLINE Sheared<T, Real> apply(Vec3f p) const {
+    const Vec3<Real> r{p.x - origin.x, p.y - origin.y, p.z - origin.z};
+    const Real along = along_x ? r.x : along_y ? r.y : r.z;
+    const T x = along_x ? r.z : r.x, y = along_y ? r.z : r.y;
+    using std::fma;
+    return {fma(static_cast<T>(slope_x), static_cast<T>(along), x),
+            fma(static_cast<T>(slope_y), static_cast<T>(along), y), along};
+  }
+
+  using Truth = decltype(Real{} < Real{});
+  struct Decision {
+    Truth certain;
+    Truth apart;  // the edge functions have not all one sign: the ray passes beside the triangle
+  };
+
+  /// In float32. With unit roundoff e = 2^-24, an edge function X - T, both products of two sheared coordinates, has X
+  /// off by 2e |X| and T by 3e |T| before they are subtracted and once more rounded. Were the sign of the result wrong,
+  /// |X| would be at most |T|, to terms of e, and the result at most 5e |T|. So 8e of the largest T bounds all three.
+  KD_HD KD_INLINE Decision filter(const TriangleVertices& triangle) const {
+    using std::fabs, std::fma;
+    const auto a = apply<Real>(triangle.a), b = apply<Real>(triangle.b), c = apply<Real>(triangle.c);
+    const Real tu = b.y * c.x, tv = c.y * a.x, tw = a.y * b.x;
+    const Real u = fma(b.x, c.y, -tu), v = fma(c.x, a.y, -tv), w = fma(a.x, b.y, -tw);
+    const Real bound = 0x1p-21f * largest_of(largest_of(fabs(tu), fabs(tv)), fabs(tw));
+    const Real least = least_of(least_of(fabs(u), fabs(v)), fabs(w));
+    return {least > bound, signs_differ(u, v, w)};
+  }
+};
+
+/// Of one ray.
+KD_HD KD_INLINE Shear<float> shear_along(const LatticeRay& ray) {
+  Shear<float> shear;
+  const float sign = ray.direction[ray.axis];
+  shear.origin = ray.origin;
+  shear.along_x = ray.axis == 0;
+  shear.along_y = ray.axis == 1;
+  shear.slope_x = -sign * (shear.along_x ? ray.direction.z : ray.direction.x);
+  shear.slope_y = -sign * (shear.along_y ? ray.direction.z : ray.direction.y);
+  return shear;
+}
 
 }  // namespace detail
 
@@ -81,10 +133,7 @@ class ExactTest {
   using Distance = double;
 
   KD_HD KD_INLINE explicit ExactTest(const LatticeRay& ray)
-      : origin_(ray.origin), sign_(ray.direction[ray.axis]), along_x_(ray.axis == 0), along_y_(ray.axis == 1) {
-    slope_x_ = -sign_ * (along_x_ ? ray.direction.z : ray.direction.x);
-    slope_y_ = -sign_ * (along_y_ ? ray.direction.z : ray.direction.y);
-  }
+      : shear_(detail::shear_along(ray)), sign_(ray.direction[ray.axis]) {}
 
   /// Whether the ray, taken over all s, passes through the triangle, and then its distance s, good to 2^-50 of the
   /// largest vertex distance. Triangles around an edge or a vertex that the ray passes through are at one distance: for
@@ -92,7 +141,7 @@ class ExactTest {
   /// a body is entered before it is left. (The limit on s is for tests that gain by it, core/float_triangle.h.)
   template <RayMode mode, class Counter>
   KD_HD KD_INLINE bool meets(const TriangleVertices& triangle, float, double& s, Counter& counter) const {
-    const Decision decision = filter(triangle);
+    const auto decision = shear_.filter(triangle);
     if (decision.certain && decision.apart) return false;
     counter.evaluated_in_double();
     const Weights w = weigh(triangle);
@@ -116,7 +165,7 @@ class ExactTest {
  protected:
   /// The three edge functions, exact in sign: each the weight of the vertex across from its edge.
   struct Weights {
-    detail::Sheared<double> a, b, c;
+    detail::Sheared<double, float> a, b, c;
     double u, v, w;
 
     KD_HD KD_INLINE double sum() const { return u + v + w; }
@@ -136,35 +185,9 @@ class ExactTest {
     }
   };
 
-  /// In float32 each sheared coordinate is off by one rounding of itself, in double it is exact: v - origin is exact in
-  /// float32, and 24 bits of slope times 24 bits of distance fit.
-  template <class T>
-  KD_HD KD_INLINE detail::Sheared<T> shear(Vec3f p) const {
-    const Vec3f r = p - origin_;
-    const float along = along_x_ ? r.x : along_y_ ? r.y : r.z;
-    const T x = along_x_ ? r.z : r.x, y = along_y_ ? r.z : r.y;
-    return {std::fma(static_cast<T>(slope_x_), static_cast<T>(along), x),
-            std::fma(static_cast<T>(slope_y_), static_cast<T>(along), y), along};
-  }
-
-  struct Decision {
-    bool certain;
-    bool apart;  // the edge functions have not all one sign: the ray passes beside the triangle
-  };
-
-  /// In float32. With unit roundoff e = 2^-24, an edge function X - T, both products of two sheared coordinates, has X
-  /// off by 2e |X| and T by 3e |T| before they are subtracted and once more rounded. Were the sign of the result wrong,
-  /// |X| would be at most |T|, to terms of e, and the result at most 5e |T|. So 8e of the largest T bounds all three.
-  KD_HD KD_INLINE Decision filter(const TriangleVertices& triangle) const {
-    const auto a = shear<float>(triangle.a), b = shear<float>(triangle.b), c = shear<float>(triangle.c);
-    const float tu = b.y * c.x, tv = c.y * a.x, tw = a.y * b.x;
-    const float u = std::fma(b.x, c.y, -tu), v = std::fma(c.x, a.y, -tv), w = std::fma(a.x, b.y, -tw);
-    const float bound = 0x1p-21f * largest_of(std::fabs(tu), std::fabs(tv), std::fabs(tw));
-    return {least_of(std::fabs(u), std::fabs(v), std::fabs(w)) > bound, signs_differ(u, v, w)};
-  }
-
   KD_HD KD_INLINE Weights weigh(const TriangleVertices& triangle) const {
-    const auto a = shear<double>(triangle.a), b = shear<double>(triangle.b), c = shear<double>(triangle.c);
+    const auto a = shear_.apply<double>(triangle.a), b = shear_.apply<double>(triangle.b),
+               c = shear_.apply<double>(triangle.c);
     return {a,
             b,
             c,
@@ -175,16 +198,16 @@ class ExactTest {
 
   /// Whether the triangle's normal, right-handed by its corners, points along the ray. For two of the three axes x and
   /// y are a left-handed pair.
-  KD_HD KD_INLINE bool leaves_by(const Weights& w) const { return (w.sum() * sign_ > 0) != (along_x_ || along_y_); }
+  KD_HD KD_INLINE bool leaves_by(const Weights& w) const {
+    return (w.sum() * sign_ > 0) != (shear_.along_x || shear_.along_y);
+  }
 
  private:
   /// By how much a face that the ray leaves by comes later, of its vertices' distances: 16 times the rounding of s.
   static constexpr double kLeavingLater = 0x1p-46;
 
-  Vec3f origin_;
-  float sign_;               // of the direction along its axis
-  float slope_x_, slope_y_;  // what x and y lose for each step along the axis, negated
-  bool along_x_, along_y_;   // the axis; where both are false it is z
+  detail::Shear<float> shear_;
+  float sign_;  // of the direction along its axis
 };
 
 /// Of the triangles that ExactTest meets, those whose front the ray meets, where their corners are wound

@@ -214,7 +214,7 @@ TEST_CASE("hierarchy: a ray's test of a box leaves out none that it passes, and 
       leave = std::min(leave, std::max(t0, t1));
       edge = std::max(edge, (std::fabs(o) + std::fabs(static_cast<long double>(centre[axis])) + scale) / std::fabs(d));
     }
-    const Passage passage = BoxTest(ray, node).pass(node, rounded_up(ray.t_max));
+    const Passage<float> passage = box_test(ray, node).pass(node, rounded_up(ray.t_max));
     if (enter <= leave) {
       ++passed;
       if (!passage.passes()) FAIL("a box that the ray passes is left out");
@@ -238,7 +238,7 @@ TEST_CASE("hierarchy: boxes and rays beyond float32's range are let through") {
     for (const double from : {0.0, far, -far}) {
       for (const double speed : {1e-200, 1.0, 1e200}) {
         const Ray ray{{from, 0, 0}, {speed, 0, speed * 1e-300}, 0, 1e300};
-        CHECK(BoxTest(ray, node).pass(node, rounded_up(ray.t_max)).passes());
+        CHECK(box_test(ray, node).pass(node, rounded_up(ray.t_max)).passes());
       }
     }
   }

@@ -31,29 +31,42 @@ struct Lighting {
   FrameView frame;
   uint32_t light = 0;
 
+  /// Calls trace(shadow ray, the colour that is added if it meets nothing) where the light may add something; whether
+  /// it did.
+  template <class Trace>
+  KD_HD KD_INLINE bool ask(uint32_t pixel, const SurfaceHit& hit, const Trace& trace) const {
+    if (hit.instance == kNone) return false;
+    const LightView& source = frame.scene.lights[light];
+    const Vec3d direction = primary_direction(frame, pixel);
+    const Surface surface = surface_at(frame.scene, hit, direction);
+    const ToLight way = to_light(source, surface.shadow_origin, kFar);
+    const float share = arriving(source, way);
+    const bool asked = share > 0 && faces(surface, way);
+    if (asked) {
+      // Before the ray is traced, so that nothing else of the surface is kept meanwhile.
+      const Material material = material_at(frame.scene, hit);
+      trace(shadow_ray(surface, way), reflected(source, surface, material, way.direction, direction) * share);
+    }
+    return asked;
+  }
+
+  KD_HD KD_INLINE void add(uint32_t pixel, const SurfaceHit& hit, bool lit, Vec3f added) const {
+    const bool first = light == 0;
+    if (!first && !lit) return;
+    Pixel out = first ? begin_sample(frame, pixel, hit) : frame.colour[pixel];
+    if (lit) out.colour = out.colour + added;
+    frame.colour[pixel] = out;
+  }
+
   KD_HD uint32_t operator()(uint32_t pixel) const {
     const SurfaceHit hit = frame.hits[pixel];
-    const bool first = light == 0;
-    bool asked = false, lit = false;
+    bool lit = false;
     Vec3f added{0, 0, 0};
-    if (hit.instance != kNone) {
-      const LightView& source = frame.scene.lights[light];
-      const Vec3d direction = primary_direction(frame, pixel);
-      const Surface surface = surface_at(frame.scene, hit, direction);
-      const ToLight way = to_light(source, surface.shadow_origin, kFar);
-      const float share = arriving(source, way);
-      asked = share > 0 && faces(surface, way);
-      if (asked) {
-        // Before the ray is traced, so that nothing else of the surface is kept meanwhile.
-        added = reflected(source, surface, material_at(frame.scene, hit), way.direction, direction) * share;
-        lit = is_lit<Instances>(frame.scene, hit, surface.shadow_origin, way);
-      }
-    }
-    if (first || lit) {
-      Pixel out = first ? begin_sample(frame, pixel, hit) : frame.colour[pixel];
-      if (lit) out.colour = out.colour + added;
-      frame.colour[pixel] = out;
-    }
+    const bool asked = ask(pixel, hit, [&](const Ray& ray, Vec3f colour) {
+      added = colour;
+      lit = !any_hit<Instances>(frame.scene, ray, {hit.instance, hit.triangle});
+    });
+    add(pixel, hit, lit, added);
     return asked;
   }
 };

@@ -14,23 +14,22 @@ struct Excluded {
   uint32_t triangle = kNone;
 };
 
-/// Which sides of an instance's surfaces a camera ray meets. A shadow ray meets both, everywhere.
+/// Which sides of an instance's surfaces a camera ray meets, as a triangle test: visit.operator()<Test>() is called
+/// with it. A shadow ray meets both, everywhere.
 struct BothSides {
-  template <TriangleLayout layout, class Counter>
-  KD_HD KD_INLINE static uint32_t closest(const SceneView&, uint32_t, const ObjectView& object, const LatticeRay& ray,
-                                          float s_limit, Counter& counter) {
-    return traverse<RayMode::closest, ExactTest, layout>(object, ray, s_limit, kNoTriangle, counter);
+  template <class Visit>
+  KD_HD KD_INLINE static auto with_test(const SceneView&, uint32_t, const Visit& visit) {
+    return visit.template operator()<ExactTest>();
   }
 };
 
 /// Of some instances the fronts alone. The lattice is wound as the mesh is, however an instance is placed, mirrored
 /// ones too.
 struct SidesAsAsked {
-  template <TriangleLayout layout, class Counter>
-  KD_HD KD_INLINE static uint32_t closest(const SceneView& scene, uint32_t instance, const ObjectView& object,
-                                          const LatticeRay& ray, float s_limit, Counter& counter) {
-    if (!scene.front_only[instance]) return BothSides::closest<layout>(scene, instance, object, ray, s_limit, counter);
-    return traverse<RayMode::closest, FrontTest, layout>(object, ray, s_limit, kNoTriangle, counter);
+  template <class Visit>
+  KD_HD KD_INLINE static auto with_test(const SceneView& scene, uint32_t instance, const Visit& visit) {
+    if (!scene.front_only[instance]) return visit.template operator()<ExactTest>();
+    return visit.template operator()<FrontTest>();
   }
 };
 
@@ -41,6 +40,7 @@ struct SidesAsAsked {
 template <TriangleLayout layout = TriangleLayout::expanded>
 struct ThroughHierarchy {
   static constexpr TriangleLayout kLayout = layout;
+  static constexpr bool kOnlyOne = false;
   using Sides = BothSides;
   using Shadows = ThroughHierarchy;  // what shadow rays go through
 
@@ -53,7 +53,7 @@ struct ThroughHierarchy {
   KD_HD static void for_each(const SceneView& scene, const Ray& ray, const double& t_limit, const Visit& visit) {
     if (scene.instance_count == 0) return;
     HierarchyNode node = load(scene.hierarchy);
-    const BoxTest test(ray, node);
+    const BoxTest<float> test = box_test(ray, node);
     float limit = rounded_up(t_limit);
     if (!test.pass(node, limit).passes()) return;
     Postponed stack[kMaxHierarchyDepth];
@@ -71,7 +71,7 @@ struct ThroughHierarchy {
       while (!node.is_leaf) {
         const uint32_t first = node.first;
         const HierarchyNode a = load(scene.hierarchy + first), b = load(scene.hierarchy + first + 1);
-        const Passage to_a = test.pass(a, limit), to_b = test.pass(b, limit);
+        const Passage<float> to_a = test.pass(a, limit), to_b = test.pass(b, limit);
         const bool a_first = to_a.passes() && (!to_b.passes() || to_a.enter <= to_b.enter);
         if (to_a.passes() && to_b.passes())
           stack[open++] = a_first ? Postponed{first + 1, to_b.enter} : Postponed{first, to_a.enter};
@@ -92,6 +92,7 @@ struct ThroughHierarchy {
 template <TriangleLayout layout = TriangleLayout::expanded>
 struct OnlyInstance {
   static constexpr TriangleLayout kLayout = layout;
+  static constexpr bool kOnlyOne = true;
   using Sides = BothSides;
   using Shadows = OnlyInstance;
 
@@ -134,8 +135,9 @@ KD_HD inline SurfaceHit closest_hit(const SceneView& scene, const Ray& ray, Coun
     const float s_limit = best.instance == kNone ? lattice_ray.s_max : detail::limit_in_lattice(lattice_ray, t_limit);
     if (s_limit < 0) return true;
     const ObjectView& object = scene.objects[scene.instances[index].object].tree;
-    const uint32_t triangle =
-        Instances::Sides::template closest<Instances::kLayout>(scene, index, object, lattice_ray, s_limit, counter);
+    const uint32_t triangle = Instances::Sides::with_test(scene, index, [&]<class Test>() {
+      return traverse<RayMode::closest, Test, Instances::kLayout>(object, lattice_ray, s_limit, kNoTriangle, counter);
+    });
     if (triangle == kNoTriangle) return true;
     const TriangleHit hit = ExactTest(lattice_ray).locate(object.triangle<Instances::kLayout>(triangle));
     reduce(best, {lattice_ray.t_at(hit.s), hit.u, hit.v, index, triangle});

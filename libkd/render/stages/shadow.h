@@ -11,10 +11,9 @@ KD_HD KD_INLINE bool faces(const Surface& surface, const ToLight& way) {
   return dot(surface.geometric, way.direction) > 0 && dot(surface.shading, way.direction) > 0;
 }
 
-/// For a surface that faces the light.
-template <class Instances>
-KD_HD KD_INLINE bool is_lit(const SceneView& scene, const SurfaceHit& hit, Vec3d shadow_origin, const ToLight& way) {
-  return !any_hit<Instances>(scene, {shadow_origin, way.direction, 0, way.distance}, {hit.instance, hit.triangle});
+/// Of a surface that faces the light: any_hit says whether it lies in shadow.
+KD_HD KD_INLINE Ray shadow_ray(const Surface& surface, const ToLight& way) {
+  return {surface.shadow_origin, way.direction, 0, way.distance};
 }
 
 }  // namespace kd::render
