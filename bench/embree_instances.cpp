@@ -33,11 +33,9 @@ class Instances final : public EmbreeInstances {
   int error() const { return static_cast<int>(rtcGetDeviceError(device_)); }
 
   std::optional<float> closest(const Ray& ray) const override {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
+    RTCIntersectContext context = asking_for(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
     RTCRayHit query{};
     const Vec3f o = vec_cast<float>(ray.origin), d = vec_cast<float>(ray.direction);
-    constexpr float kEndless = std::numeric_limits<float>::infinity();
     query.ray = {o.x, o.y, o.z, static_cast<float>(ray.t_min), d.x, d.y, d.z, 0, kEndless, 0xffffffffu, 0, 0};
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     rtcIntersect1(scene_, &context, &query);
@@ -45,7 +43,41 @@ class Instances final : public EmbreeInstances {
     return query.ray.tfar;
   }
 
+  void closest(const PerRay<Ray>& rays, RaySet set, PerRay<std::optional<float>>& distances) const override {
+    RTCIntersectContext context = asking_for(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
+    alignas(32) int valid[kPacketRays]{};
+    RTCRayHit8 query{};
+    for_each_ray(set, [&](size_t i) {
+      const Vec3f o = vec_cast<float>(rays[i].origin), d = vec_cast<float>(rays[i].direction);
+      valid[i] = -1;
+      query.ray.org_x[i] = o.x;
+      query.ray.org_y[i] = o.y;
+      query.ray.org_z[i] = o.z;
+      query.ray.tnear[i] = static_cast<float>(rays[i].t_min);
+      query.ray.dir_x[i] = d.x;
+      query.ray.dir_y[i] = d.y;
+      query.ray.dir_z[i] = d.z;
+      query.ray.tfar[i] = kEndless;
+      query.ray.mask[i] = 0xffffffffu;
+      query.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+    });
+    rtcIntersect8(valid, scene_, &context, &query);
+    for_each_ray(set, [&](size_t i) {
+      const bool met = query.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
+      distances[i] = met ? std::optional(query.ray.tfar[i]) : std::nullopt;
+    });
+  }
+
  private:
+  static constexpr float kEndless = std::numeric_limits<float>::infinity();
+
+  static RTCIntersectContext asking_for(RTCIntersectContextFlags flags) {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = flags;
+    return context;
+  }
+
   RTCScene empty_scene() const {
     RTCScene scene = rtcNewScene(device_);
     rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);

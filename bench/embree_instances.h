@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "core/packet.h"
 #include "core/ray.h"
 #include "render/load.h"
 #include "sys/result.h"
@@ -16,6 +17,8 @@ class EmbreeInstances {
   virtual ~EmbreeInstances() = default;
   /// Distance of the nearest hit. From any thread.
   virtual std::optional<float> closest(const Ray& ray) const = 0;
+  /// The same of the rays of a packet, as rays that belong together.
+  virtual void closest(const PerRay<Ray>& rays, RaySet set, PerRay<std::optional<float>>& distances) const = 0;
 };
 
 /// Vertices are lattice coordinates, which are exact in float32; instances take them to scene space. Triangles robust,

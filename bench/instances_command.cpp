@@ -12,8 +12,9 @@
 #include "machine.h"
 #include "measure_rays.h"
 #include "render/expand.h"
-#include "render/stages/object_intersection.h"
+#include "render/packet_intersection.h"
 #include "render/strip.h"
+#include "render/tiles.h"
 #include "scene/parse_scene.h"
 #include "sys/parallel.h"
 #include "sys/timer.h"
@@ -29,21 +30,20 @@ struct Options {
   int repeats = 5;
 };
 
-constexpr size_t kRayGrain = 1024;
+using Hits = std::vector<std::optional<float>>;  // distances
 
 /// Of one tracer: its hits, and the seconds of each repeat.
 struct Traced {
-  std::vector<std::optional<float>> hits;  // distances
+  Hits hits;
   std::vector<double> seconds;
 };
 
-/// hit = trace(ray) for all of them.
+/// trace(pixels, set) for packets that make up all rays, in the renderer's order.
 template <class Trace>
-void trace_all(const std::vector<Ray>& rays, const Trace& trace, Traced& out) {
-  out.hits.resize(rays.size());
+void trace_all(const render::Tiles& tiles, const Trace& trace, Traced& out) {
   Timer timer;
-  parallel_ranges(rays.size(), kRayGrain, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) out.hits[i] = trace(rays[i]);
+  parallel_ranges(tiles.count(), 1, [&](size_t begin, size_t end) {
+    for (size_t tile = begin; tile < end; ++tile) tiles.for_each_packet(tile, trace);
   });
   out.seconds.push_back(timer.seconds());
 }
@@ -81,37 +81,58 @@ Result<void> measure(const Options& o) {
   std::vector<Ray> rays(size_t{size->width} * size->height);
   for (size_t i = 0; i < rays.size(); ++i) rays[i] = primary_ray(view, static_cast<uint32_t>(i));
 
-  Traced ours, theirs;
+  const render::Tiles tiles(size->width, size->height);
+  Traced ours, singles, packets;
+  for (Traced* traced : {&ours, &singles, &packets}) traced->hits.resize(rays.size());
   for (int i = 0; i < o.repeats; ++i) {  // in turn, as the machine's speed may drift
     if (tools::interrupted()) return Error{ErrorClass::interrupted, o.scene, "interrupted"};
     trace_all(
-        rays,
-        [&](const Ray& ray) -> std::optional<float> {
-          const render::SurfaceHit hit = render::closest_hit(view.scene, ray);
-          if (hit.instance == render::kNone) return std::nullopt;
-          return static_cast<float>(hit.t);
+        tiles,
+        [&](const PerRay<uint32_t>& pixels, RaySet set) {
+          PerRay<Ray> packet;
+          PerRay<render::SurfaceHit> found;
+          for_each_ray(set, [&](size_t lane) { packet[lane] = rays[pixels[lane]]; });
+          render::closest_hits<render::ThroughHierarchy<>>(view.scene, packet, set, found);
+          for_each_ray(set, [&](size_t lane) {
+            if (found[lane].instance != render::kNone) ours.hits[pixels[lane]] = static_cast<float>(found[lane].t);
+          });
         },
         ours);
     trace_all(
-        rays, [&](const Ray& ray) { return (*peer)->closest(ray); }, theirs);
+        tiles,
+        [&](const PerRay<uint32_t>& pixels, RaySet set) {
+          for_each_ray(set, [&](size_t lane) { singles.hits[pixels[lane]] = (*peer)->closest(rays[pixels[lane]]); });
+        },
+        singles);
+    trace_all(
+        tiles,
+        [&](const PerRay<uint32_t>& pixels, RaySet set) {
+          PerRay<Ray> packet;
+          PerRay<std::optional<float>> found;
+          for_each_ray(set, [&](size_t lane) { packet[lane] = rays[pixels[lane]]; });
+          (*peer)->closest(packet, set, found);
+          for_each_ray(set, [&](size_t lane) { packets.hits[pixels[lane]] = found[lane]; });
+        },
+        packets);
   }
 
   const auto version = embree_version();
   if (!version) return version.error();
   fmt::print("{}: {} instances, {} camera rays ({}), {} threads, {}; medians of {}\n\n", o.scene, instances.size(),
              rays.size(), o.size, thread_count(), this_machine().processor, o.repeats);
-  Table table({"tracer", "ms", "Mrays/s", "of Embree"});
-  const double peer_seconds = median(theirs.seconds);
+  Table table({"tracer", "ms", "Mrays/s", "of Embree's single rays"});
+  const double peer_seconds = median(singles.seconds);
   const auto add = [&](const std::string& name, const Traced& traced) {
     const double seconds = median(traced.seconds);
     table.add({name, fmt::format("{:.1f}", 1e3 * seconds),
                fmt::format("{:.2f}", 1e-6 * static_cast<double>(rays.size()) / seconds),
                fmt::format("{:.2f}", peer_seconds / seconds)});
   };
-  add("exact kd-trees", ours);
-  add(*version + ", robust, single rays", theirs);
+  add("exact kd-trees, packets of 8", ours);
+  add(*version + ", robust, single rays", singles);
+  add(*version + ", robust, packets of 8", packets);
   fmt::print("{}\n{} rays differ: one alone hits, or their distances differ by more than 1e-4.\n", table.markdown(),
-             differences(ours, theirs));
+             differences(ours, singles));
   return {};
 }
 

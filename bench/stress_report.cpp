@@ -23,9 +23,10 @@ std::string_view class_name(stress::RayClass c) { return stress::class_rows()[st
 
 std::string mesh_name(const StressRow& row) { return std::filesystem::path(row.mesh).stem().string(); }
 
-constexpr const char* kFaultNames[] = {
-    "none",        "unsnapped",   "off-grid", "displaced", "test-missed", "test-doubled", "test-off", "closest-none",
-    "closest-off", "closest-far", "any-none", "any-off",   "leak",        "odd",          "acne",     "contact-lost"};
+constexpr const char* kFaultNames[] = {"none",         "unsnapped", "off-grid",     "displaced",   "test-missed",
+                                       "test-doubled", "test-off",  "closest-none", "closest-off", "closest-far",
+                                       "any-none",     "any-off",   "leak",         "odd",         "acne",
+                                       "contact-lost", "packet-off"};
 static_assert(std::size(kFaultNames) == stress::kFaults);
 
 /// Rows that have a key in common, in the order in which keys come first.

@@ -70,6 +70,8 @@ struct Verdict {
   bool meets = false;     // there certainly is a hit
   bool may_meet = false;  // there may be one: false is certain
   Fault fault = Fault::none;
+  uint32_t closest = kNoTriangle;  // what the tracer found
+  uint32_t any = kNoTriangle;
 };
 
 namespace detail {
@@ -274,6 +276,8 @@ KD_HD Fault check_traced(const CaseView& c, const Query& q, bool plainly, Verdic
     answers.any_other = Tracer::any(c, ray, answers.closest);
   const Survey s = survey<Tracer>(c, ray, exact, q.excluded, answers.closest, plainly);
 
+  verdict.closest = answers.closest;
+  verdict.any = answers.any;
   verdict.meets = s.first.triangle != kNoTriangle;
   verdict.may_meet = s.possible;
   tally.add(kSnapped);

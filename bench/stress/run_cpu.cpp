@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <mutex>
 
+#include "core/packet_traversal.h"
 #include "stress/run.h"
 #include "sys/parallel.h"
 #include "sys/timer.h"
@@ -10,6 +11,45 @@ namespace kd::stress {
 namespace {
 
 constexpr size_t kRayGrain = 32;
+
+/// The rays of a packet, what the judge said of each, and that traced together they meet what each meets alone.
+template <class Test>
+class JudgedPacket {
+ public:
+  void add(const Query& query, const Verdict& verdict) {
+    const size_t i = count_++;
+    verdicts_[i] = verdict;
+    query_.rays[i] = verdict.ray;
+    query_.s_limit[i] = verdict.ray.s_max;
+    query_.excluded[i] = query.excluded;
+    if (verdict.traced) traced_ |= set_of(i);
+  }
+
+  /// Calls visit(number of the ray in the packet, verdict) for each.
+  template <class Visit>
+  void judge(const ObjectView& object, Tally& tally, const Visit& visit) {
+    if constexpr (Test::kExact) {
+      PerRay<uint32_t> closest, any;
+      traverse<RayMode::closest, Test>(object, query_, traced_, closest);
+      traverse<RayMode::any, Test>(object, query_, traced_, any);
+      for_each_ray(traced_, [&](size_t i) {
+        Verdict& v = verdicts_[i];
+        const bool same = closest[i] == v.closest && (any[i] == kNoTriangle) == (v.any == kNoTriangle) &&
+                          (any[i] == kNoTriangle || any[i] != query_.excluded[i]);
+        if (same || v.fault != Fault::none) return;
+        v.fault = Fault::packet_off;
+        tally.add(kMismatches);
+      });
+    }
+    for (size_t i = 0; i < count_; ++i) visit(i, verdicts_[i]);
+  }
+
+ private:
+  PacketQuery query_;
+  PerRay<Verdict> verdicts_;
+  RaySet traced_ = kNoRays;
+  size_t count_ = 0;
+};
 
 template <class Test>
 JobResult run_test(const StressCase& stress_case, const Job& job, const Peer* peer) {
@@ -21,14 +61,20 @@ JobResult run_test(const StressCase& stress_case, const Job& job, const Peer* pe
   Timer timer;
   parallel_ranges(job.rays, kRayGrain, [&](size_t begin, size_t end) {
     Tally& tally = tallies.local();
-    for (size_t i = begin; i < end; ++i) {
-      const uint64_t index = job.first + i;
-      const Query query = make_query(view, job.ray_class, job.seed, index);
-      const Verdict verdict = check_query<TestTracer<Test>>(view, query, is_plain(job, index), tally);
-      if (peer && verdict.traced && query.excluded == kNoTriangle) peer->trace(verdict, tally);
-      if (verdict.fault == Fault::none) continue;
-      const std::scoped_lock lock(mutex);
-      out.failures.push_back({index, verdict.fault});
+    for (size_t first = begin; first < end; first += kPacketRays) {
+      JudgedPacket<Test> packet;
+      for (size_t i = first; i < std::min(first + kPacketRays, end); ++i) {
+        const uint64_t index = job.first + i;
+        const Query query = make_query(view, job.ray_class, job.seed, index);
+        const Verdict verdict = check_query<TestTracer<Test>>(view, query, is_plain(job, index), tally);
+        if (peer && verdict.traced && query.excluded == kNoTriangle) peer->trace(verdict, tally);
+        packet.add(query, verdict);
+      }
+      packet.judge(view.object, tally, [&](size_t i, const Verdict& verdict) {
+        if (verdict.fault == Fault::none) return;
+        const std::scoped_lock lock(mutex);
+        out.failures.push_back({job.first + first + i, verdict.fault});
+      });
     }
   });
   out.seconds = timer.seconds();

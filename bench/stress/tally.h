@@ -25,8 +25,9 @@ enum class Fault : uint32_t {
   odd,           // a closed mesh was crossed an odd number of times
   acne,          // a surface shadowed itself
   contact_lost,  // a gap of one lattice step was not seen
+  packet_off,    // in a packet with others the ray met something else than alone
 };
-constexpr uint32_t kFaults = 16;
+constexpr uint32_t kFaults = 17;
 
 enum class Harm : uint32_t { none, miss, double_count, mismatch };
 

@@ -7,7 +7,9 @@
 #include <fmt/format.h>
 
 #include "render/expand.h"
+#include "render/packet_stages.h"
 #include "render/strip.h"
+#include "render/tiles.h"
 #include "sys/parallel.h"
 #include "sys/timer.h"
 
@@ -17,16 +19,29 @@ namespace {
 
 constexpr size_t kPixelGrain = 1024;
 
-/// stage(pixel) for every pixel; returns the sum of what the calls return. Ends early once `progress` is cancelled.
+/// Runs a stage for every pixel of a strip, in packets where it traces rays; returns the sum of what its calls return.
+/// Ends early once `progress` is cancelled.
 template <class Stage>
-uint64_t for_each_pixel(const Stage& stage, size_t pixels, SharedProgress& progress, double share) {
+uint64_t run_stage(const Stage& stage, uint32_t width, uint32_t height, SharedProgress& progress, double share) {
   std::atomic<uint64_t> total = 0;
-  parallel_ranges(pixels, kPixelGrain, [&](size_t begin, size_t end) {
-    if (!progress.keep_going(share)) return;
-    uint64_t count = 0;
-    for (size_t pixel = begin; pixel < end; ++pixel) count += stage(static_cast<uint32_t>(pixel));
-    total += count;
-  });
+  if constexpr (requires(PerRay<uint32_t> pixels) { run_packet(stage, pixels, kNoRays); }) {
+    const Tiles tiles(width, height);
+    parallel_ranges(tiles.count(), 1, [&](size_t begin, size_t end) {
+      uint64_t count = 0;
+      for (size_t tile = begin; tile < end && progress.keep_going(share); ++tile) {
+        tiles.for_each_packet(
+            tile, [&](const PerRay<uint32_t>& pixels, RaySet set) { count += run_packet(stage, pixels, set); });
+      }
+      total += count;
+    });
+  } else {
+    parallel_ranges(size_t{width} * height, kPixelGrain, [&](size_t begin, size_t end) {
+      if (!progress.keep_going(share)) return;
+      uint64_t count = 0;
+      for (size_t pixel = begin; pixel < end; ++pixel) count += stage(static_cast<uint32_t>(pixel));
+      total += count;
+    });
+  }
   return total;
 }
 
@@ -92,7 +107,7 @@ Result<RenderStats> CpuRenderer::render(Strip strip, Frame& frame, const Progres
   const auto launch = [&](const auto& stage) {
     Timer stage_timer;
     const double share = static_cast<double>(launched++) / static_cast<double>(plan.launches());
-    const uint64_t count = for_each_pixel(stage, pixels, shared, share);
+    const uint64_t count = run_stage(stage, view.width, view.height, shared, share);
     stats.add_stage(stage.kName, stage_timer.seconds());
     return totals[kCounter<std::decay_t<decltype(stage)>>] += count;
   };

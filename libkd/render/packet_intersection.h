@@ -1,0 +1,185 @@
+// Object intersection and shadow rays by packets, for the CPU: what closest_hit and any_hit (stages/
+// object_intersection.h) return for a ray, for up to eight at once, to the bit. Rays whose directions rise along the
+// same axes go through the hierarchy together; in an instance's lattice they are sorted again
+// (core/packet_traversal.h).
+#pragma once
+
+#include <bit>
+
+#include "core/packet_traversal.h"
+#include "render/stages/object_intersection.h"
+
+namespace kd::render {
+
+namespace detail {
+
+/// Rays that rise along the same axes, and how they find instances: see ThroughHierarchy.
+struct HierarchyPacket {
+  struct Postponed {
+    PacketFloats enter;
+    PacketTruths inside;  // the rays that pass the box
+    uint32_t node;
+  };
+
+  const SceneView& scene;
+  const PerRay<Ray>& rays;
+  PerRay<double>& t_limit;
+
+  BoxTest<PacketFloats> box_tests(RaySet set) const {
+    PerRay<BoxTest<float>> each;
+    for_each_ray(set, [&](size_t i) { each[i] = box_test(rays[i], scene.hierarchy[0]); });
+    const auto gather = [&](const auto& number_of) {
+      PerRay<float> numbers{};
+      for_each_ray(set, [&](size_t i) { numbers[i] = number_of(each[i]); });
+      return PacketFloats(numbers);
+    };
+    const auto gather_vector = [&](Vec3f BoxTest<float>::*vector) {
+      return Vec3<PacketFloats>{gather([&](const BoxTest<float>& one) { return (one.*vector).x; }),
+                                gather([&](const BoxTest<float>& one) { return (one.*vector).y; }),
+                                gather([&](const BoxTest<float>& one) { return (one.*vector).z; })};
+    };
+    const BoxTest<float>& first = each[first_of(set)];
+    return {gather_vector(&BoxTest<float>::inverse),
+            gather_vector(&BoxTest<float>::enter),
+            gather_vector(&BoxTest<float>::leave),
+            gather([](const BoxTest<float>& one) { return one.t_min; }),
+            first.rising_x,
+            first.rising_y,
+            first.rising_z};
+  }
+
+  /// Calls visit(instance, set); it returns those of the lanes that have found what they look for.
+  template <class Visit>
+  void for_each(RaySet set, const Visit& visit) const {
+    const BoxTest<PacketFloats> test = box_tests(set);
+    PerRay<float> limits{};
+    const auto take_limits = [&](RaySet of) {
+      for_each_ray(of, [&](size_t i) { limits[i] = rounded_up(t_limit[i]); });
+      return PacketFloats(limits);
+    };
+    PacketFloats limit = take_limits(set);
+    HierarchyNode node = scene.hierarchy[0];
+    PacketTruths inside = test.pass(node, limit).passes() & PacketTruths::in(set);
+    if (inside.rays() == kNoRays) return;
+    Postponed stack[kMaxHierarchyDepth];
+    int open = 0;
+    while (true) {
+      if (node.is_leaf) {
+        const RaySet visiting = inside.rays();
+        const RaySet done = visit(node.first, visiting);
+        for_each_ray(done, [&](size_t i) { t_limit[i] = -std::numeric_limits<double>::infinity(); });
+        limit = take_limits(visiting);
+        set &= ~done;
+        if (set == kNoRays) return;
+        inside = PacketTruths::in(kNoRays);
+      } else {
+        const uint32_t first = node.first;
+        const HierarchyNode &a = scene.hierarchy[first], &b = scene.hierarchy[first + 1];
+        const Passage<PacketFloats> to_a = test.pass(a, limit), to_b = test.pass(b, limit);
+        const PacketTruths in_a = to_a.passes() & inside, in_b = to_b.passes() & inside;
+        const RaySet through_a = in_a.rays(), through_b = in_b.rays(), both = through_a & through_b;
+        // Where some rays pass both, the child that most of them enter first.
+        const RaySet a_sooner = (to_a.enter <= to_b.enter).rays() & both;
+        const bool a_first =
+            through_b == kNoRays || (through_a != kNoRays && 2 * std::popcount(a_sooner) >= std::popcount(both));
+        if (through_a != kNoRays && through_b != kNoRays) {
+          stack[open++] = a_first ? Postponed{to_b.enter, in_b, first + 1} : Postponed{to_a.enter, in_a, first};
+        }
+        inside = a_first ? in_a : in_b;
+        node = a_first ? a : b;
+      }
+      while (inside.rays() == kNoRays) {
+        if (open == 0) return;
+        --open;
+        inside = stack[open].inside & !(stack[open].enter > limit);
+        node = scene.hierarchy[stack[open].node];
+      }
+    }
+  }
+};
+
+/// The same for packets as Instances::for_each is for a ray; `visit` as for HierarchyPacket.
+template <class Instances, class Visit>
+void for_each_instance(const SceneView& scene, const PerRay<Ray>& rays, RaySet set, PerRay<double>& t_limit,
+                       const Visit& visit) {
+  if constexpr (Instances::kOnlyOne) {
+    visit(0, set);
+  } else if (scene.instance_count != 0) {
+    PerRay<uint32_t> octant{};
+    for_each_ray(set, [&](size_t i) {
+      const Vec3d d = rays[i].direction;
+      octant[i] = (d.x >= 0 ? 4u : 0u) | (d.y >= 0 ? 2u : 0u) | (d.z >= 0 ? 1u : 0u);
+    });
+    const HierarchyPacket packet{scene, rays, t_limit};
+    while (set != kNoRays) {
+      RaySet alike = kNoRays;
+      for_each_ray(set, [&](size_t i) { alike |= octant[i] == octant[first_of(set)] ? set_of(i) : kNoRays; });
+      packet.for_each(alike, visit);
+      set &= ~alike;
+    }
+  }
+}
+
+}  // namespace detail
+
+/// The nearest hits of some rays in the scene, in `best`.
+template <class Instances>
+void closest_hits(const SceneView& scene, const PerRay<Ray>& rays, RaySet set, PerRay<SurfaceHit>& best) {
+  PerRay<double> t_limit{};
+  for_each_ray(set, [&](size_t i) {
+    best[i] = {};
+    t_limit[i] = rays[i].t_max;
+  });
+  PacketQuery query;
+  query.excluded.fill(kNoTriangle);
+  PerRay<uint32_t> met;
+  detail::for_each_instance<Instances>(scene, rays, set, t_limit, [&](uint32_t index, RaySet visiting) {
+    RaySet entering = kNoRays;
+    for_each_ray(visiting, [&](size_t i) {
+      LatticeRay& ray = query.rays[i];
+      if (!detail::enter_instance(scene, index, rays[i], ray)) return;
+      query.s_limit[i] = best[i].instance == kNone ? ray.s_max : detail::limit_in_lattice(ray, t_limit[i]);
+      if (query.s_limit[i] >= 0) entering |= set_of(i);
+    });
+    const ObjectView& object = scene.objects[scene.instances[index].object].tree;
+    Instances::Sides::with_test(scene, index, [&]<class Test>() {
+      traverse<RayMode::closest, Test, Instances::kLayout>(object, query, entering, met);
+    });
+    for_each_ray(entering, [&](size_t i) {
+      if (met[i] == kNoTriangle) return;
+      const LatticeRay& ray = query.rays[i];
+      const TriangleHit hit = ExactTest(ray).locate(object.triangle<Instances::kLayout>(met[i]));
+      reduce(best[i], {ray.t_at(hit.s), hit.u, hit.v, index, met[i]});
+      t_limit[i] = best[i].t;
+    });
+    return kNoRays;
+  });
+}
+
+/// Which of some rays meet anything but what they exclude.
+template <class Instances>
+RaySet any_hits(const SceneView& scene, const PerRay<Ray>& rays, const PerRay<Excluded>& excluded, RaySet set) {
+  PerRay<double> t_limit{};
+  for_each_ray(set, [&](size_t i) { t_limit[i] = rays[i].t_max; });
+  PacketQuery query;
+  PerRay<uint32_t> met;
+  RaySet shadowed = kNoRays;
+  detail::for_each_instance<Instances>(scene, rays, set, t_limit, [&](uint32_t index, RaySet visiting) {
+    RaySet entering = kNoRays;
+    for_each_ray(visiting, [&](size_t i) {
+      if (!detail::enter_instance(scene, index, rays[i], query.rays[i])) return;
+      query.s_limit[i] = query.rays[i].s_max;
+      query.excluded[i] = excluded[i].instance == index ? excluded[i].triangle : kNoTriangle;
+      entering |= set_of(i);
+    });
+    const ObjectView& object = scene.objects[scene.instances[index].object].tree;
+    traverse<RayMode::any, ExactTest, Instances::kLayout>(object, query, entering, met);
+    RaySet done = kNoRays;
+    for_each_ray(entering, [&](size_t i) { done |= met[i] != kNoTriangle ? set_of(i) : kNoRays; });
+    shadowed |= done;
+    return done;
+  });
+  return shadowed;
+}
+
+}  // namespace kd::render

@@ -1,0 +1,156 @@
+// Packets against the same rays one by one.
+#include <doctest/doctest.h>
+
+#include <limits>
+
+#include "core/hierarchy.h"
+#include "core/packet_traversal.h"
+#include "core/shapes.h"
+
+using namespace kd;
+using namespace kd::test;
+
+namespace {
+
+constexpr float kFloatInfinity = std::numeric_limits<float>::infinity();
+
+/// How many packets were compared, of how many rays, and how many hits.
+struct Tally {
+  int packets = 0, rays = 0, hits = 0;
+};
+
+/// Some rays of a packet: aimed each for itself, or beside the first as a camera's are. Some start or end on the way.
+RaySet random_packet(const Traced& traced, Random& random, PerRay<LatticeRay>& rays) {
+  const int bits = traced.lattice.bits;
+  const double top = lattice_max(bits);
+  const PlainRay first = adversarial_ray(traced.shape, bits, random);
+  const bool coherent = random.chance(0.6);
+  RaySet set = kNoRays;
+  for (size_t i = 0; i < kPacketRays; ++i) {
+    PlainRay plain = coherent ? first : adversarial_ray(traced.shape, bits, random);
+    if (coherent && random.chance(0.7)) plain.direction = plain.direction + random.vector(length(plain.direction) / 50);
+    const double reach = top / std::fmax(length(plain.direction), 1e-30);
+    const double t_min = random.chance(0.1) ? random.unit() * reach : 0;
+    const double t_max = random.chance(0.1) ? t_min + random.unit() * reach : 1e300;
+    if (random.chance(0.9) && snap_ray(plain.origin, plain.direction, t_min, t_max, bits, rays[i])) set |= set_of(i);
+  }
+  return set;
+}
+
+void compare(const Traced& traced, int packets, uint64_t seed, Tally& tally) {
+  Random random(seed);
+  const ObjectView view = traced.view();
+  NoCounter counter;
+  for (int n = 0; n < packets; ++n) {
+    PacketQuery query;
+    const RaySet set = random_packet(traced, random, query.rays);
+    query.s_limit.fill(1e30f);
+    query.excluded.fill(kNoTriangle);
+    const auto compare_closest = [&](PerRay<uint32_t>& met) {
+      traverse<RayMode::closest>(view, query, set, met);
+      for_each_ray(set, [&](size_t i) {
+        CHECK(met[i] == traverse<RayMode::closest>(view, query.rays[i], query.s_limit[i], query.excluded[i], counter));
+      });
+    };
+    const auto compare_any = [&] {
+      PerRay<uint32_t> met;
+      traverse<RayMode::any>(view, query, set, met);
+      for_each_ray(set, [&](size_t i) {
+        const uint32_t alone =
+            traverse<RayMode::any>(view, query.rays[i], query.s_limit[i], query.excluded[i], counter);
+        CHECK((met[i] == kNoTriangle) == (alone == kNoTriangle));
+        CHECK((met[i] == kNoTriangle || met[i] != query.excluded[i]));
+      });
+    };
+    PerRay<uint32_t> first;
+    compare_closest(first);
+    compare_any();
+    ++tally.packets;
+    for_each_ray(set, [&](size_t i) {
+      ++tally.rays;
+      tally.hits += first[i] != kNoTriangle;
+      // Then without what was met, or only up to there.
+      query.excluded[i] = random.chance(0.5) ? first[i] : kNoTriangle;
+      query.s_limit[i] = random.chance(0.5) ? static_cast<float>(random.unit() * lattice_max(view.bits)) : 1e30f;
+    });
+    PerRay<uint32_t> second;
+    compare_closest(second);
+    compare_any();
+  }
+}
+
+}  // namespace
+
+TEST_CASE("packets: each ray meets what it meets alone") {
+  Tally tally;
+  for (const int bits : {3, 10, 21, 24}) {
+    CAPTURE(bits);
+    for (const Soup kind : {Soup::large, Soup::small, Soup::needles, Soup::mixed})
+      compare(Traced(soup_shape(bits, 250, kind, 7), bits), 500, 17, tally);
+    if (bits == 3) continue;
+    compare(Traced(rooms_shape(bits, 3, 1), bits), 1500, 3, tally);
+    compare(Traced(stacked_boxes_shape(bits, 3), bits), 1500, 4, tally);
+    compare(Traced(sphere_shape(bits, 2), bits), 1500, 5, tally);
+    build::BuildSettings deep{{0.01, 1.5, 0.05}, kMaxDepth};
+    compare(Traced(rooms_shape(bits, 3, 2), bits, deep), 500, 6, tally);
+  }
+  CHECK(tally.packets > 20000);
+  CHECK(tally.rays > 4 * tally.packets);
+  CHECK(tally.hits > tally.rays / 2);
+}
+
+TEST_CASE("packets: the compact layout meets the same") {
+  const int bits = 21;
+  const Traced traced(rooms_shape(bits, 3, 1), bits);
+  std::vector<uint32_t> corners;
+  for (const auto& t : traced.shape.triangles) corners.insert(corners.end(), {t[0], t[1], t[2]});
+  std::vector<VertexWord> vertices(traced.shape.vertices.size());
+  for (size_t i = 0; i < vertices.size(); ++i) CompactTriangles::pack_narrow(traced.shape.vertices[i], &vertices[i]);
+  const ObjectView compact(traced.tree.nodes.data(), traced.tree.references.data(), nullptr, bits,
+                           {corners.data(), vertices.data(), true});
+  Random random(9);
+  for (int n = 0; n < 1000; ++n) {
+    PacketQuery query;
+    const RaySet set = random_packet(traced, random, query.rays);
+    query.s_limit.fill(1e30f);
+    query.excluded.fill(kNoTriangle);
+    PerRay<uint32_t> met, expected;
+    traverse<RayMode::closest, ExactTest, TriangleLayout::compact>(compact, query, set, met);
+    traverse<RayMode::closest>(traced.view(), query, set, expected);
+    for_each_ray(set, [&](size_t i) { CHECK(met[i] == expected[i]); });
+  }
+}
+
+TEST_CASE("packets: numbers are computed as a float's are") {
+  Random random(4);
+  const std::array<float, 8> special{0, -0.0f, 1, -1, kFloatInfinity, -kFloatInfinity, 0x1p-140f, 3e38f};
+  const auto any_float = [&] {
+    return random.chance(0.3) ? special[random.integer(0, 7)]
+                              : static_cast<float>(random.vector(1).x * std::exp2(random.vector(60).x));
+  };
+  const auto same = [](float x, float y) { return std::bit_cast<uint32_t>(x) == std::bit_cast<uint32_t>(y); };
+  for (int n = 0; n < 20000; ++n) {
+    alignas(32) PerRay<float> a, b, c;
+    for (size_t i = 0; i < kPacketRays; ++i) {
+      a[i] = any_float();
+      b[i] = any_float();
+      c[i] = any_float();
+    }
+    const PacketFloats x(a), y(b), z(c);
+    for (size_t i = 0; i < kPacketRays; ++i) {
+      const auto of = [i](PacketFloats p) { return p.lanes[i]; };
+      const auto holds = [i](PacketTruths p) { return (p.rays() >> i & 1) != 0; };
+      const float fused = std::fma(a[i], b[i], c[i]);
+      CHECK((same(of(fma(x, y, z)), fused) || std::isnan(fused)));
+      CHECK(same(of(least_of(x, y)), least_of(a[i], b[i])));
+      CHECK(same(of(largest_of(x, y, z)), largest_of(a[i], b[i], c[i])));
+      CHECK(same(of(fabs(x)), std::fabs(a[i])));
+      CHECK(same(of(a[0]), a[0]));
+      CHECK(holds(signs_differ(x, y, z)) == signs_differ(a[i], b[i], c[i]));
+      CHECK(holds(x < y) == (a[i] < b[i]));
+      CHECK(holds((y <= z) & !(x > y)) == (!(a[i] > b[i]) && b[i] <= c[i]));
+      CHECK(holds(x >= y) == (a[i] >= b[i]));
+    }
+  }
+  for (RaySet set = 0; set <= first_rays(kPacketRays); ++set) CHECK(PacketTruths::in(set).rays() == set);
+}
