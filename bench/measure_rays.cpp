@@ -26,7 +26,8 @@ Result<ImageSize> parse_size(const std::string& text) {
 Result<RayMeasurement> measure_rays(const render::Device& device, const nkd::ObjectFile& object, const char* name,
                                     std::span<const render::RayRecord> rays, RayMode mode, render::TriangleTest test,
                                     const Effort& effort) {
-  const render::TraceJob job{rays, mode, effort.warm_ups, effort.repeats, effort.count_steps, test, effort.layout};
+  const render::TraceJob job{rays, mode,          effort.warm_ups, effort.repeats, effort.count_steps,
+                             test, effort.layout, effort.packets};
   auto outcome = device.backend->trace(object, job, device.index);
   if (!outcome) return outcome.error();
   RayMeasurement m{name, mode, rays.size(), ray_hash(rays), 0, 0, std::move(*outcome)};

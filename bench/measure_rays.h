@@ -30,6 +30,7 @@ struct Effort {
   int repeats = 10;          // >= 1
   bool count_steps = false;  // CPU only
   TriangleLayout layout = TriangleLayout::expanded;
+  bool packets = true;  // CPU and the exact test only
 };
 
 /// What one class of rays came to.

@@ -79,6 +79,10 @@ struct Subject {
   render::Device device;
   nkd::ObjectFile object;
   render::TriangleTest test;
+
+  bool in_packets(const Options& o) const {
+    return o.effort.packets && test == render::TriangleTest::exact && device.backend->name == "cpu";
+  }
 };
 
 /// The rays that the options ask for, traced: one class from a file, or the three shared ones.
@@ -119,6 +123,7 @@ Json report_json(const Options& o, const Subject& subject, const Traced& traced)
          {"vertex_form", kd::name_of(subject.object.geometry().form)},
          {"triangle_test", name_of(subject.test)},
          {"layout", name_of(o.effort.layout)},
+         {"packets", subject.in_packets(o)},
          {"device", subject.device.description},
          {"warm_ups", o.effort.warm_ups},
          {"repeats", o.effort.repeats},
@@ -193,6 +198,8 @@ Command trace_command(CLI::App& app) {
                 "How triangles lie in memory: expanded, 48 bytes each, or compact, 12 and 8 a vertex")
       ->check(CLI::IsMember({"expanded", "compact"}))
       ->capture_default_str();
+  c->add_flag("!--single-rays", o->effort.packets,
+              "On the CPU, the exact test's rays one by one, as those of the other tests are, not in packets");
   c->add_flag("--count", o->effort.count_steps, "Count nodes, leaves and triangles a ray (CPU)");
   c->add_option("--hits", o->hits, "Write the hits: float t, int32 primitive, float u, v, 16 bytes each");
   c->add_option("--json", o->json, "Write a JSON report to this file, or to stdout (-)");

@@ -19,23 +19,28 @@ class JudgedPacket {
   void add(const Query& query, const Verdict& verdict) {
     const size_t i = count_++;
     verdicts_[i] = verdict;
-    query_.rays[i] = verdict.ray;
-    query_.s_limit[i] = verdict.ray.s_max;
+    rays_[i] = {query.origin, query.direction, query.t_min, query.t_max};
     query_.excluded[i] = query.excluded;
-    if (verdict.traced) traced_ |= set_of(i);
   }
 
   /// Calls visit(number of the ray in the packet, verdict) for each.
   template <class Visit>
   void judge(const ObjectView& object, Tally& tally, const Visit& visit) {
     if constexpr (Test::kExact) {
-      PerRay<uint32_t> closest, any;
-      traverse<RayMode::closest, Test>(object, query_, traced_, closest);
-      traverse<RayMode::any, Test>(object, query_, traced_, any);
-      for_each_ray(traced_, [&](size_t i) {
+      const RaySet set = first_rays(count_);
+      const BasicRay<PacketDoubles> p = packed(rays_, set);
+      const RaySet traced = set & snap_ray(p.origin, p.direction, p.t_min, p.t_max, object.bits, query_.rays).rays();
+      query_.s_limit = query_.rays.s_max;
+      PacketAnswer closest, any;
+      traverse<RayMode::closest, Test>(object, query_, traced, closest);
+      traverse<RayMode::any, Test>(object, query_, traced, any);
+      for_each_ray(set, [&](size_t i) {
         Verdict& v = verdicts_[i];
-        const bool same = closest[i] == v.closest && (any[i] == kNoTriangle) == (v.any == kNoTriangle) &&
-                          (any[i] == kNoTriangle || any[i] != query_.excluded[i]);
+        const bool is_traced = (traced & set_of(i)) != kNoRays;
+        const uint32_t shadow = is_traced ? any.met[i] : kNoTriangle;
+        const bool same = is_traced == v.traced && (is_traced ? closest.met[i] : kNoTriangle) == v.closest &&
+                          (shadow == kNoTriangle) == (v.any == kNoTriangle) &&
+                          (shadow == kNoTriangle || shadow != query_.excluded[i]);
         if (same || v.fault != Fault::none) return;
         v.fault = Fault::packet_off;
         tally.add(kMismatches);
@@ -45,9 +50,9 @@ class JudgedPacket {
   }
 
  private:
+  PerRay<Ray> rays_;
   PacketQuery query_;
   PerRay<Verdict> verdicts_;
-  RaySet traced_ = kNoRays;
   size_t count_ = 0;
 };
 

@@ -35,6 +35,18 @@ KD_HD KD_INLINE float largest_of(float a, float b) { return KD_ON_DEVICE ? fmaxf
 KD_HD KD_INLINE float least_of(float a, float b, float c) { return least_of(least_of(a, b), c); }
 KD_HD KD_INLINE float largest_of(float a, float b, float c) { return largest_of(largest_of(a, b), c); }
 
+/// For code that computes with a number or with a packet's (core/packet.h): what a comparison returns, and what is done
+/// with it.
+template <class T>
+using Truth = decltype(T{} < T{});
+template <class T>
+KD_HD KD_INLINE constexpr T select(bool which, T a, T b) {
+  return which ? a : b;
+}
+KD_HD KD_INLINE constexpr bool any(bool holds) { return holds; }
+KD_HD KD_INLINE constexpr bool all(bool holds) { return holds; }
+KD_HD KD_INLINE constexpr float to_float(double x) { return static_cast<float>(x); }
+
 /// Whether not all of three numbers have the same sign bit.
 KD_HD KD_INLINE bool signs_differ(float a, float b, float c) {
   const auto bits = [](float x) { return std::bit_cast<uint32_t>(x); };
@@ -54,9 +66,11 @@ KD_HD KD_INLINE float reciprocal(float x) {
 }
 
 /// 1 / x to 2^-52 of itself, for |x| in [2^-100, 2^100]: from that of the nearest float32, by one step of third order.
-KD_HD KD_INLINE double reciprocal(double x) {
-  const double first = reciprocal(static_cast<float>(x)), error = std::fma(-x, first, 1.0);
-  return std::fma(first, std::fma(error, error, error), first);
+template <class Double>
+KD_HD KD_INLINE Double reciprocal(Double x) {
+  using std::fma;
+  const Double first = reciprocal(to_float(x)), error = fma(-x, first, Double(1));
+  return fma(first, fma(error, error, error), first);
 }
 
 /// 2^exponent, for a normal one.
@@ -69,7 +83,8 @@ KD_HD KD_INLINE int exponent_of(double x) { return static_cast<int>(std::bit_cas
 
 /// The multiple of `grid`, a power of two, that is nearest to x, the even one of two, if |x| < 2^51 grid; beyond that
 /// some number near x. Two additions, where a device takes a conversion's time for rint.
-KD_HD KD_INLINE double rounded_to(double x, double grid) {
+template <class Double>
+KD_HD KD_INLINE Double rounded_to(Double x, double grid) {
   const double shift = 0x1.8p52 * grid;  // doubles around it are multiples of the grid
   return (x + shift) - shift;
 }

@@ -27,10 +27,15 @@ struct InverseFrame {
   Vec3d y_row{0, 1, 0};
   Vec3d z_row{0, 0, 1};
 
-  KD_HD KD_INLINE Vec3d apply_vector(Vec3d v) const {
-    return {fused_dot(x_row, v), fused_dot(y_row, v), fused_dot(z_row, v)};
+  /// Of one vector or point, or of a packet's (core/packet.h).
+  template <class T = double>
+  KD_HD KD_INLINE Vec3<T> apply_vector(Vec3<T> v) const {
+    return {fused_dot(vec_cast<T>(x_row), v), fused_dot(vec_cast<T>(y_row), v), fused_dot(vec_cast<T>(z_row), v)};
   }
-  KD_HD KD_INLINE Vec3d apply_point(Vec3d p) const { return apply_vector(p - point); }
+  template <class T = double>
+  KD_HD KD_INLINE Vec3<T> apply_point(Vec3<T> p) const {
+    return apply_vector(p - vec_cast<T>(point));
+  }
   /// Takes a normal of the framed space back out: the inverse transpose of the frame's axes.
   KD_HD KD_INLINE Vec3d normal_to_outer(Vec3d n) const { return x_row * n.x + y_row * n.y + z_row * n.z; }
 };

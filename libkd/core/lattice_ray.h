@@ -21,19 +21,33 @@
 
 namespace kd {
 
-struct LatticeRay {
-  Vec3f origin;     // lattice steps, within one of the cube
-  Vec3f direction;  // lattice steps per unit of s; the component along `axis` is 1 or -1
-  Vec3f inverse;    // 1 / direction, rounded; kParallel where a component is 0
-  int axis = 0;
-  float s_min = 0;  // the ray's own interval, >= 0
-  float s_max = 0;
-  float s_exit = 0;  // where the ray as snapped leaves the cube
-  double t_base = 0;
-  double t_scale = 1;
+/// Of one ray, or of a packet's (core/packet.h).
+template <class FloatType, class DoubleType, class AxisType>
+struct BasicLatticeRay {
+  using Float = FloatType;
+  using Double = DoubleType;
+  using Axis = AxisType;
 
-  KD_HD KD_INLINE double t_at(double s) const { return t_base + s * t_scale; }
+  Vec3<Float> origin;     // lattice steps, within one of the cube
+  Vec3<Float> direction;  // lattice steps per unit of s; the component along `axis` is 1 or -1
+  Vec3<Float> inverse;    // 1 / direction, rounded; kParallel where a component is 0
+  Axis axis{};
+  Float s_min = 0;  // the ray's own interval, >= 0
+  Float s_max = 0;
+  Float s_exit = 0;  // where the ray as snapped leaves the cube
+  Double t_base = 0;
+  Double t_scale = 1;
+
+  KD_HD KD_INLINE Double t_at(Double s) const { return t_base + s * t_scale; }
 };
+using LatticeRay = BasicLatticeRay<float, double, int>;
+
+/// Whether an axis is this one; a vector's component along it.
+KD_HD KD_INLINE bool is_axis(int axis, int which) { return axis == which; }
+template <class T>
+KD_HD KD_INLINE T component(Vec3<T> v, int axis) {
+  return v[axis];
+}
 
 /// Stands for 1/0. A ray parallel to a plane is thereby at distance +-2^58 or more from it unless it lies in it, and
 /// then at distance 0: it counts as just past the plane, on the side of higher coordinates, which is also where the tie
@@ -43,8 +57,12 @@ constexpr float kParallel = 1152921504606846976.0f;  // 2^60
 /// Where the snapped ray leaves the cube [0, top]^3, off by at most 2.1 x 2^-24 of itself, as all distances of planes;
 /// negative if it never is inside. Computed from what was snapped, where differences are exact, so it is right however
 /// far away the ray came from.
-KD_HD KD_INLINE float exit_distance(const LatticeRay& ray, float top) {
-  const auto leaves = [&](float origin, float inverse) { return ((inverse > 0 ? top : 0.0f) - origin) * inverse; };
+template <class LatticeRayType>
+KD_HD KD_INLINE auto exit_distance(const LatticeRayType& ray, float top) {
+  using Float = typename LatticeRayType::Float;
+  const auto leaves = [&](Float origin, Float inverse) {
+    return (select(inverse > 0, Float(top), Float(0)) - origin) * inverse;
+  };
   return least_of(leaves(ray.origin.x, ray.inverse.x), leaves(ray.origin.y, ray.inverse.y),
                   leaves(ray.origin.z, ray.inverse.z));
 }
@@ -79,44 +97,54 @@ KD_HD KD_INLINE int largest_axis(Vec3d d) {
 
 /// Takes a ray that is already in lattice space onto the grid. `o` and `d` are in lattice steps; they may be anything,
 /// far away and NaN included. False: the ray has no point in the cube within [t_min, t_max], or is not a ray.
-KD_HD KD_HOST_INLINE bool snap_ray(Vec3d o, Vec3d d, double t_min, double t_max, int bits, LatticeRay& ray) {
-  const int k = largest_axis(d);
-  const double ok = o[k], dk = d[k], speed = std::fabs(dk);
-  if (!(speed > 1e-300)) return false;
+template <class LatticeRayType>
+KD_HD KD_HOST_INLINE Truth<typename LatticeRayType::Double> snap_ray(Vec3<typename LatticeRayType::Double> o,
+                                                                     Vec3<typename LatticeRayType::Double> d,
+                                                                     typename LatticeRayType::Double t_min,
+                                                                     typename LatticeRayType::Double t_max, int bits,
+                                                                     LatticeRayType& ray) {
+  using Float = typename LatticeRayType::Float;
+  using Double = typename LatticeRayType::Double;
+  using std::copysign, std::fabs, std::fma;
+  const auto k = largest_axis(d);
+  const Double ok = component(o, k), dk = component(d, k), speed = fabs(dk);
+  const Truth<Double> moves = speed > 1e-300;
+  if (!any(moves)) return Truth<Double>();
 
   const double grid = power_of_two(bits - kMaxLatticeBits);
   const auto top = static_cast<float>(lattice_max(bits));
 
   // Where the ray enters the cube, widened by a grid step on every side: snapping may bring it that much nearer.
-  double t_enter;
-  if (!pass_cube(o, d, -grid, top + grid, t_min, t_max, t_enter)) return false;
+  Double t_enter;
+  const Truth<Double> enters = pass_cube(o, d, -grid, top + grid, t_min, t_max, t_enter);
+  if (!any(enters)) return Truth<Double>();
 
   // The origin: on the last grid plane across k at or before the entry, inside the cube.
-  const double sign = std::copysign(1.0, dk), entry = std::fma(t_enter, dk, ok) * sign;
-  const double nearest = rounded_to(entry, grid), before = nearest > entry ? nearest - grid : nearest;
-  const float plane = least_of(largest_of(static_cast<float>(before * sign), 0.0f), top);
-  const double t_scale = 1 / speed, t_base = (plane - ok) * sign * t_scale;
+  const Double sign = copysign(Double(1), dk), entry = fma(t_enter, dk, ok) * sign;
+  const Double nearest = rounded_to(entry, grid), before = select(nearest > entry, nearest - grid, nearest);
+  const Float plane = least_of(largest_of(to_float(before * sign), Float(0)), Float(top));
+  const Double t_scale = 1 / speed, t_base = (Double(plane) - ok) * sign * t_scale;
   const auto place = [&](int axis) {
-    const auto p = static_cast<float>(rounded_to(std::fma(t_base, d[axis], o[axis]), grid));
-    return axis == k ? plane : least_of(largest_of(p, -1.0f), top + 1);
+    const Float p = to_float(rounded_to(fma(t_base, d[axis], o[axis]), grid));
+    return select(is_axis(k, axis), plane, least_of(largest_of(p, Float(-1)), Float(top + 1)));
   };
   ray.origin = {place(0), place(1), place(2)};
 
-  const auto turn = [&](double da) { return static_cast<float>(rounded_to(da * t_scale, 0x1p-24)); };
+  const auto turn = [&](Double da) { return to_float(rounded_to(da * t_scale, 0x1p-24)); };
   ray.direction = {turn(d.x), turn(d.y), turn(d.z)};
-  const auto invert = [](float c) {
-    const float inverse = reciprocal(c);
-    return c == 0 ? kParallel : inverse;
+  const auto invert = [](Float c) {
+    const Float inverse = reciprocal(c);
+    return select(c == 0, Float(kParallel), inverse);
   };
   ray.inverse = {invert(ray.direction.x), invert(ray.direction.y), invert(ray.direction.z)};
 
   ray.axis = k;
   ray.t_base = t_base;
   ray.t_scale = t_scale;
-  ray.s_min = largest_of(static_cast<float>((t_min - t_base) * speed), 0.0f);
-  ray.s_max = least_of(static_cast<float>((t_max - t_base) * speed), 1e30f);
+  ray.s_min = largest_of(to_float((t_min - t_base) * speed), Float(0));
+  ray.s_max = least_of(to_float((t_max - t_base) * speed), Float(1e30f));
   ray.s_exit = exit_distance(ray, top);
-  return ray.s_exit >= 0;
+  return moves & enters & (ray.s_exit >= 0);
 }
 
 }  // namespace kd

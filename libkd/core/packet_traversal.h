@@ -10,59 +10,25 @@
 
 #include <limits>
 
-#include "core/packet.h"
+#include "core/lattice_packet.h"
 #include "core/traversal.h"
 
 namespace kd {
 
 /// What `traverse` takes for a ray, for each of a packet.
 struct PacketQuery {
-  PerRay<LatticeRay> rays;
-  PerRay<float> s_limit;
+  LatticePacket rays;
+  PacketFloats s_limit;
   PerRay<uint32_t> excluded;
 };
 
-namespace detail {
-
-/// Rays of one axis and one octant, by components.
-struct Packet {
-  std::array<PacketFloats, 3> origin, inverse;
-  PacketFloats s_min, s_exit;
-  std::array<uint32_t, 3> down;  // along each axis: 1 where the rays go towards lower coordinates
-  Shear<PacketFloats> shear;
-
-  Packet(const PerRay<LatticeRay>& rays, RaySet set) {
-    enum { kOrigin, kInverse = 3, kSMin = 6, kSExit, kSlopeX, kSlopeY, kNumbers };
-    alignas(32) std::array<PerRay<float>, kNumbers> of{};
-    for_each_ray(set, [&](size_t i) {
-      const LatticeRay& ray = rays[i];
-      const Shear<float> one = shear_along(ray);
-      of[kOrigin][i] = ray.origin.x;
-      of[kOrigin + 1][i] = ray.origin.y;
-      of[kOrigin + 2][i] = ray.origin.z;
-      of[kInverse][i] = ray.inverse.x;
-      of[kInverse + 1][i] = ray.inverse.y;
-      of[kInverse + 2][i] = ray.inverse.z;
-      of[kSMin][i] = ray.s_min;
-      of[kSExit][i] = ray.s_exit;
-      of[kSlopeX][i] = one.slope_x;
-      of[kSlopeY][i] = one.slope_y;
-    });
-    const LatticeRay& first = rays[first_of(set)];
-    for (size_t axis = 0; axis < 3; ++axis) {
-      origin[axis] = PacketFloats(of[kOrigin + axis]);
-      inverse[axis] = PacketFloats(of[kInverse + axis]);
-      down[axis] = std::bit_cast<uint32_t>(first.inverse[static_cast<int>(axis)]) >> 31;
-    }
-    s_min = PacketFloats(of[kSMin]);
-    s_exit = PacketFloats(of[kSExit]);
-    shear = {{origin[0], origin[1], origin[2]},
-             PacketFloats(of[kSlopeX]),
-             PacketFloats(of[kSlopeY]),
-             first.axis == 0,
-             first.axis == 1};
-  }
+/// What it returns for each, and of closest hits where they are, as ExactTest::locate has it.
+struct PacketAnswer {
+  PerRay<uint32_t> met;
+  PerRay<TriangleHit> hits;
 };
+
+namespace detail {
 
 struct PacketEntry {
   PacketFloats s_entry, s_exit;
@@ -72,60 +38,96 @@ struct PacketEntry {
 
 /// The nearest hits so far of a packet's rays.
 template <RayMode mode, class Test>
-struct PacketHits {
-  const PacketQuery& query;
-  PerRay<uint32_t>& met;
-  PerRay<double> nearest;
-  alignas(32) PerRay<float> s_best{};  // rounded up
-
-  PacketHits(const PacketQuery& asked, RaySet set, PerRay<uint32_t>& answer) : query(asked), met(answer) {
-    for_each_ray(set, [&](size_t i) {
-      met[i] = kNoTriangle;
-      nearest[i] = s_best[i] = min_of(query.rays[i].s_max, query.s_limit[i]);
+class PacketHits {
+ public:
+  PacketHits(const PacketQuery& query, int axis, RaySet rays, PacketAnswer& answer)
+      : shear(shear_along(query.rays, axis)), query_(query), sign_(query.rays.direction[axis]), answer_(answer) {
+    const PacketFloats limit = least_of(query.rays.s_max, query.s_limit);
+    for_each_ray(rays, [&](size_t i) {
+      answer_.met[i] = kNoTriangle;
+      nearest_[i] = s_best_[i] = limit[i];
     });
   }
 
-  /// Tests the rays of `open` one by one; returns those that look for nothing else. A function of its own, so that the
+  const Shear<PacketFloats> shear;
+
+  /// The distances of the nearest hits, rounded up.
+  KD_INLINE PacketFloats s_best() const { return PacketFloats(s_best_); }
+
+  /// Tests the rays of `open` exactly; returns those that look for nothing else. A function of its own, so that the
   /// loop that calls it for one triangle in ten keeps its vectors in registers.
-  [[gnu::noinline]] RaySet decide(uint32_t candidate, const TriangleVertices& triangle, RaySet open) {
-    NoCounter counter;
+  [[gnu::noinline]] RaySet decide(uint32_t candidate, const TriangleVertices& triangle, RaySet certain, RaySet open) {
     RaySet done = kNoRays;
-    for_each_ray(open, [&](size_t i) {
-      typename Test::Distance s;
-      if (candidate == query.excluded[i]) return;
-      if (!Test(query.rays[i]).template meets<mode>(triangle, s_best[i], s, counter)) return;
-      if (s < query.rays[i].s_min || s > nearest[i]) return;
+    const auto nearer = [&](size_t i, double s) {
+      if (s < query_.rays.s_min[i] || s > nearest_[i]) return false;
       if constexpr (mode == RayMode::any) {
-        met[i] = candidate;
-        s_best[i] = -std::numeric_limits<float>::infinity();  // it enters no other cell
+        s_best_[i] = -std::numeric_limits<float>::infinity();  // it enters no other cell
         done |= set_of(i);
-      } else if (s < nearest[i] || candidate < met[i]) {
-        nearest[i] = s;
-        s_best[i] = rounded_up(s);
-        met[i] = candidate;
+      } else {
+        if (!(s < nearest_[i] || candidate < answer_.met[i])) return false;
+        nearest_[i] = s;
+        s_best_[i] = rounded_up(s);
       }
+      answer_.met[i] = candidate;
+      return true;
+    };
+    for_each_ray(open, [&](size_t i) { open &= candidate == query_.excluded[i] ? ~set_of(i) : ~kNoRays; });
+    RaySet single = open;
+    if constexpr (std::is_same_v<Test, ExactTest>) {
+      const RaySet together = certain & open;  // they pass through
+      if (std::popcount(together) >= kWorthwhile) {
+        const auto w = shear.weigh<PacketDoubles>(triangle);
+        const PacketDoubles inverse = w.inverse_sum();
+        const PacketDoubles s = w.distance_times_sum(sign_) * inverse, u = w.v * inverse, v = w.w * inverse;
+        for_each_ray(together, [&](size_t i) {
+          if (nearer(i, s[i])) answer_.hits[i] = {s[i], u[i], v[i]};
+        });
+        single &= ~together;
+      }
+    }
+    for_each_ray(single, [&](size_t i) {
+      const Test test(ray_of(query_.rays, i));
+      NoCounter counter;
+      double s;
+      if (!test.template meets<mode>(triangle, s_best_[i], s, counter) || !nearer(i, s)) return;
+      if constexpr (mode == RayMode::closest) answer_.hits[i] = test.locate(triangle);
     });
     return done;
   }
+
+ private:
+  /// From how many rays on eight together take less time than one by one.
+  static constexpr int kWorthwhile = 3;
+
+  const PacketQuery& query_;
+  PacketFloats sign_;
+  PacketAnswer& answer_;
+  PerRay<double> nearest_;
+  alignas(32) PerRay<float> s_best_{};
 };
 
-/// For rays of one axis and octant; writes `met` of these.
+/// For rays of one axis and octant; answers for these.
 template <RayMode mode, class Test, TriangleLayout layout>
-void traverse_packet(const ObjectView& object, const PacketQuery& query, RaySet rays, PerRay<uint32_t>& met) {
-  const Packet packet(query.rays, rays);
-  PacketHits<mode, Test> hits(query, rays, met);
+void traverse_packet(const ObjectView& object, const PacketQuery& query, RaySet rays, PacketAnswer& answer) {
+  const size_t first = first_of(rays);
+  PacketHits<mode, Test> hits(query, query.rays.axis[first], rays, answer);
   PacketEntry stack[kMaxDepth];
   int depth = 0;
 
-  PacketFloats s_entry = packet.s_min, s_exit = least_of(packet.s_exit, PacketFloats(hits.s_best)) * kMargin;
+  const Vec3<PacketFloats>&o = query.rays.origin, &per_step = query.rays.inverse;
+  const std::array<PacketFloats, 3> origin{o.x, o.y, o.z}, inverse{per_step.x, per_step.y, per_step.z};
+  const auto is_down = [&](PacketFloats component) { return std::bit_cast<uint32_t>(component[first]) >> 31; };
+  const std::array<uint32_t, 3> downward{is_down(per_step.x), is_down(per_step.y), is_down(per_step.z)};
+
+  PacketFloats s_entry = query.rays.s_min, s_exit = least_of(query.rays.s_exit, hits.s_best()) * kMargin;
   PacketTruths inside = PacketTruths::in(rays);
   Node node = object.nodes[0];
 
   while (true) {
     while (!is_leaf(node)) {
       const auto axis = static_cast<size_t>(split_axis(node));
-      const PacketFloats s = (split_plane(node) - packet.origin[axis]) * packet.inverse[axis], s_more = s * kMargin;
-      const uint32_t down = packet.down[axis];
+      const PacketFloats s = (split_plane(node) - origin[axis]) * inverse[axis], s_more = s * kMargin;
+      const uint32_t down = downward[axis];
       const uint32_t near = first_child(node) + down, far = first_child(node) + 1 - down;
       const uint32_t near_empty = kLowerEmpty << down, far_empty = near_empty ^ (kLowerEmpty | kUpperEmpty);
       const PacketTruths in_near = (s_more >= s_entry) & inside, in_far = (s <= s_exit) & inside;
@@ -150,10 +152,10 @@ void traverse_packet(const ObjectView& object, const PacketQuery& query, RaySet 
     for (uint32_t r = begin; r < end; ++r) {
       const uint32_t candidate = object.references[r];
       const TriangleVertices triangle = object.triangle<layout>(candidate);
-      const auto decision = packet.shear.filter(triangle);
+      const auto decision = hits.shear.filter(triangle);
       const RaySet open = (inside & !(decision.certain & decision.apart)).rays();
       if (open == kNoRays) continue;
-      const RaySet done = hits.decide(candidate, triangle, open);
+      const RaySet done = hits.decide(candidate, triangle, decision.certain.rays(), open);
       if (mode == RayMode::any && done != kNoRays) {
         rays &= ~done;
         if (rays == kNoRays) return;
@@ -163,7 +165,7 @@ void traverse_packet(const ObjectView& object, const PacketQuery& query, RaySet 
 
     // Back to the nearest cell that some ray enters before its nearest hit. An entry is the plane's distance as
     // computed, so a margin is taken off before a hit counts as nearer.
-    const PacketFloats s_best(hits.s_best);
+    const PacketFloats s_best = hits.s_best();
     do {
       if (depth == 0) return;
       --depth;
@@ -177,29 +179,29 @@ void traverse_packet(const ObjectView& object, const PacketQuery& query, RaySet 
 
 }  // namespace detail
 
-/// For each of `rays` what core/traversal.h returns for it, in `met`. Test is an exact one.
+/// For each of `rays` what core/traversal.h returns for it. Test is an exact one.
 template <RayMode mode, class Test = ExactTest, TriangleLayout layout = TriangleLayout::expanded>
-void traverse(const ObjectView& object, const PacketQuery& query, RaySet rays, PerRay<uint32_t>& met) {
+void traverse(const ObjectView& object, const PacketQuery& query, RaySet rays, PacketAnswer& answer) {
   static_assert(Test::kExact);
-  PerRay<uint32_t> kind;  // axis and octant
-  for_each_ray(rays, [&](size_t i) {
-    const LatticeRay& ray = query.rays[i];
-    const auto negative = [](float x) { return std::bit_cast<uint32_t>(x) >> 31; };
-    kind[i] = static_cast<uint32_t>(ray.axis) << 3 | negative(ray.inverse.x) << 2 | negative(ray.inverse.y) << 1 |
-              negative(ray.inverse.z);
-  });
+  const auto sign = [](PacketFloats a, int bit) { return (reinterpret_cast<Ints>(a.lanes) < 0) & bit; };
+  const LatticePacket& packet = query.rays;
+  const Ints octant = sign(packet.inverse.x, 1) | sign(packet.inverse.y, 2) | sign(packet.inverse.z, 4);
+  const Ints kind = octant | (packet.axis.x.lanes & 8) | (packet.axis.y.lanes & 16);
   while (rays != kNoRays) {
     const size_t first = first_of(rays);
-    RaySet alike = kNoRays;
-    for_each_ray(rays, [&](size_t i) { alike |= kind[i] == kind[first] ? set_of(i) : kNoRays; });
-    if (is_single(alike)) {
-      NoCounter counter;
-      met[first] =
-          traverse<mode, Test, layout>(object, query.rays[first], query.s_limit[first], query.excluded[first], counter);
-    } else {
-      detail::traverse_packet<mode, Test, layout>(object, query, alike, met);
-    }
+    const RaySet alike = PacketTruths{kind == kind[first]}.rays() & rays;
     rays &= ~alike;
+    if (!is_single(alike)) {
+      detail::traverse_packet<mode, Test, layout>(object, query, alike, answer);
+      continue;
+    }
+    const LatticeRay ray = ray_of(packet, first);
+    NoCounter counter;
+    const uint32_t met =
+        traverse<mode, Test, layout>(object, ray, query.s_limit[first], query.excluded[first], counter);
+    answer.met[first] = met;
+    if (mode == RayMode::closest && met != kNoTriangle)
+      answer.hits[first] = Test(ray).locate(object.triangle<layout>(met));
   }
 }
 

@@ -6,12 +6,15 @@
 
 namespace kd {
 
-struct Ray {
-  Vec3d origin;
-  Vec3d direction;
-  double t_min = 0;
-  double t_max = 1e300;
+/// Of one ray, or of a packet's (core/packet.h).
+template <class Double>
+struct BasicRay {
+  Vec3<Double> origin;
+  Vec3<Double> direction;
+  Double t_min = 0;
+  Double t_max = 1e300;
 };
+using Ray = BasicRay<double>;
 
 /// What is asked of a ray: the first thing it meets, or whether it meets anything.
 enum class RayMode { closest, any };

@@ -48,10 +48,12 @@ struct TriangleHit {
 namespace detail {
 
 /// p x q to 1.5 ulp, so with the exact sign: Kahan's difference of products.
-KD_HD KD_INLINE double exact_edge(double px, double py, double qx, double qy) {
-  const double second = py * qx;
-  const double error = std::fma(py, qx, -second);
-  return std::fma(px, qy, -second) - error;
+template <class Double>
+KD_HD KD_INLINE Double exact_edge(Double px, Double py, Double qx, Double qy) {
+  using std::fma;
+  const Double second = py * qx;
+  const Double error = fma(py, qx, -second);
+  return fma(px, qy, -second) - error;
 }
 
 /// The sign of p x q (its value is `edge`) for a ray moved by (e, e^2): the value then is
@@ -69,6 +71,29 @@ template <class T, class Real>
 struct Sheared {
   T x, y;
   Real along;
+};
+
+/// The three edge functions, exact in sign: each the weight of the vertex across from its edge.
+template <class Double, class Real>
+struct Weights {
+  Sheared<Double, Real> a, b, c;
+  Double u, v, w;
+
+  KD_HD KD_INLINE Double sum() const { return u + v + w; }
+  KD_HD KD_INLINE Double inverse_sum() const { return reciprocal(sum()); }
+  KD_HD KD_INLINE Double distance_times_sum(Real sign) const {
+    using std::fma;
+    return fma(u, Double(a.along), fma(v, Double(b.along), w * Double(c.along))) * Double(sign);
+  }
+  KD_HD KD_INLINE bool touches() const { return u == 0 || v == 0 || w == 0; }
+  KD_HD KD_INLINE double extent() const {
+    return 1 + std::fabs(static_cast<double>(a.along)) + std::fabs(static_cast<double>(b.along)) +
+           std::fabs(static_cast<double>(c.along));
+  }
+  KD_HD KD_INLINE bool all_on_one_side() const {
+    const int side = edge_side(u, b.x, b.y, c.x, c.y);
+    return side != 0 && edge_side(v, c.x, c.y, a.x, a.y) == side && edge_side(w, a.x, a.y, b.x, b.y) == side;
+  }
 };
 
 /// The plane across a ray's axis, and what float32 can tell in it. Real is float, or a packet's for rays that share an
@@ -91,10 +116,9 @@ struct Shear {
             fma(static_cast<T>(slope_y), static_cast<T>(along), y), along};
   }
 
-  using Truth = decltype(Real{} < Real{});
   struct Decision {
-    Truth certain;
-    Truth apart;  // the edge functions have not all one sign: the ray passes beside the triangle
+    Truth<Real> certain;
+    Truth<Real> apart;  // the edge functions have not all one sign: the ray passes beside the triangle
   };
 
   /// In float32. With unit roundoff e = 2^-24, an edge function X - T, both products of two sheared coordinates, has X
@@ -109,15 +133,22 @@ struct Shear {
     const Real least = least_of(least_of(fabs(u), fabs(v)), fabs(w));
     return {least > bound, signs_differ(u, v, w)};
   }
+
+  template <class Double>
+  KD_HD KD_INLINE Weights<Double, Real> weigh(const TriangleVertices& triangle) const {
+    const auto a = apply<Double>(triangle.a), b = apply<Double>(triangle.b), c = apply<Double>(triangle.c);
+    return {a, b, c, exact_edge(b.x, b.y, c.x, c.y), exact_edge(c.x, c.y, a.x, a.y), exact_edge(a.x, a.y, b.x, b.y)};
+  }
 };
 
-/// Of one ray.
-KD_HD KD_INLINE Shear<float> shear_along(const LatticeRay& ray) {
-  Shear<float> shear;
-  const float sign = ray.direction[ray.axis];
+/// Of a ray, or of a packet's whose axis is `axis`.
+template <class LatticeRayType>
+KD_HD KD_INLINE auto shear_along(const LatticeRayType& ray, int axis) {
+  Shear<typename LatticeRayType::Float> shear;
+  const auto sign = ray.direction[axis];
   shear.origin = ray.origin;
-  shear.along_x = ray.axis == 0;
-  shear.along_y = ray.axis == 1;
+  shear.along_x = axis == 0;
+  shear.along_y = axis == 1;
   shear.slope_x = -sign * (shear.along_x ? ray.direction.z : ray.direction.x);
   shear.slope_y = -sign * (shear.along_y ? ray.direction.z : ray.direction.y);
   return shear;
@@ -133,7 +164,7 @@ class ExactTest {
   using Distance = double;
 
   KD_HD KD_INLINE explicit ExactTest(const LatticeRay& ray)
-      : shear_(detail::shear_along(ray)), sign_(ray.direction[ray.axis]) {}
+      : shear_(detail::shear_along(ray, ray.axis)), sign_(ray.direction[ray.axis]) {}
 
   /// Whether the ray, taken over all s, passes through the triangle, and then its distance s, good to 2^-50 of the
   /// largest vertex distance. Triangles around an edge or a vertex that the ray passes through are at one distance: for
@@ -163,38 +194,9 @@ class ExactTest {
   }
 
  protected:
-  /// The three edge functions, exact in sign: each the weight of the vertex across from its edge.
-  struct Weights {
-    detail::Sheared<double, float> a, b, c;
-    double u, v, w;
+  using Weights = detail::Weights<double, float>;
 
-    KD_HD KD_INLINE double sum() const { return u + v + w; }
-    KD_HD KD_INLINE double inverse_sum() const { return reciprocal(sum()); }
-    KD_HD KD_INLINE double distance_times_sum(float sign) const {
-      return std::fma(u, a.along, std::fma(v, b.along, w * c.along)) * sign;
-    }
-    KD_HD KD_INLINE bool touches() const { return u == 0 || v == 0 || w == 0; }
-    KD_HD KD_INLINE double extent() const {
-      return 1 + std::fabs(static_cast<double>(a.along)) + std::fabs(static_cast<double>(b.along)) +
-             std::fabs(static_cast<double>(c.along));
-    }
-    KD_HD KD_INLINE bool all_on_one_side() const {
-      using detail::edge_side;
-      const int side = edge_side(u, b.x, b.y, c.x, c.y);
-      return side != 0 && edge_side(v, c.x, c.y, a.x, a.y) == side && edge_side(w, a.x, a.y, b.x, b.y) == side;
-    }
-  };
-
-  KD_HD KD_INLINE Weights weigh(const TriangleVertices& triangle) const {
-    const auto a = shear_.apply<double>(triangle.a), b = shear_.apply<double>(triangle.b),
-               c = shear_.apply<double>(triangle.c);
-    return {a,
-            b,
-            c,
-            detail::exact_edge(b.x, b.y, c.x, c.y),
-            detail::exact_edge(c.x, c.y, a.x, a.y),
-            detail::exact_edge(a.x, a.y, b.x, b.y)};
-  }
+  KD_HD KD_INLINE Weights weigh(const TriangleVertices& triangle) const { return shear_.weigh<double>(triangle); }
 
   /// Whether the triangle's normal, right-handed by its corners, points along the ray. For two of the three axes x and
   /// y are a left-handed pair.

@@ -17,7 +17,7 @@ struct Vec3 {
   KD_HD KD_INLINE constexpr T operator[](int axis) const { return axis == 0 ? x : axis == 1 ? y : z; }
   KD_HD KD_INLINE constexpr void set(int axis, T value) { (axis == 0 ? x : axis == 1 ? y : z) = value; }
 
-  friend constexpr bool operator==(const Vec3&, const Vec3&) = default;
+  friend bool operator==(const Vec3&, const Vec3&) = default;
 };
 
 using Vec3d = Vec3<double>;
@@ -51,7 +51,8 @@ KD_HD KD_INLINE constexpr T dot(Vec3<T> a, Vec3<T> b) {
 /// The same sum with two roundings less.
 template <class T>
 KD_HD KD_INLINE T fused_dot(Vec3<T> a, Vec3<T> b) {
-  return std::fma(a.x, b.x, std::fma(a.y, b.y, a.z * b.z));
+  using std::fma;
+  return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z));
 }
 template <class T>
 KD_HD KD_INLINE constexpr Vec3<T> cross(Vec3<T> a, Vec3<T> b) {
@@ -76,7 +77,8 @@ KD_HD KD_INLINE Polar polar(Vec3d a) {
   return {b * reciprocal(l), l * power_of_two(exponent)};
 }
 KD_HD KD_INLINE Vec3d normalised(Vec3d a) { return polar(a).direction; }
-KD_HD KD_INLINE bool is_finite(Vec3d a) {
+template <class T = double>
+KD_HD KD_INLINE Truth<T> is_finite(Vec3<T> a) {
   // x - x is 0 for a finite x and NaN for an infinity or a NaN.
   return (a.x - a.x) + (a.y - a.y) + (a.z - a.z) == 0;
 }

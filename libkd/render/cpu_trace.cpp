@@ -23,19 +23,30 @@ struct StepCounter {
 /// hits[i] of rays[i], of a packet.
 template <RayMode mode, class Test, TriangleLayout layout>
 void trace_packet(const TraceView& view, std::span<const RayRecord> rays, HitRecord* hits) {
+  const RaySet set = first_rays(rays.size());
+  PerRay<Ray> each;
+  for_each_ray(set, [&](size_t i) {
+    const RayRecord& r = rays[i];
+    each[i] = {{r.ox, r.oy, r.oz}, {r.dx, r.dy, r.dz}, r.t_min, r.t_max};
+    hits[i] = miss_of(r);
+  });
+  const BasicRay<PacketDoubles> packet = packed(each, set);
   PacketQuery query;
-  RaySet entering = kNoRays;
-  for (size_t i = 0; i < rays.size(); ++i) {
-    hits[i] = miss_of(rays[i]);
-    if (!enter_object<Test>(view, rays[i], query.rays[i])) continue;
-    query.s_limit[i] = query.rays[i].s_max;
-    query.excluded[i] = kNoTriangle;
-    entering |= set_of(i);
-  }
-  PerRay<uint32_t> met;
-  traverse<mode, Test, layout>(view.object, query, entering, met);
+  const RaySet entering =
+      set & snap_ray(view.to_lattice.apply_point(packet.origin), view.to_lattice.apply_vector(packet.direction),
+                     packet.t_min, packet.t_max, view.object.bits, query.rays)
+                .rays();
+  query.s_limit = query.rays.s_max;
+  query.excluded.fill(kNoTriangle);
+  PacketAnswer answer;
+  traverse<mode, Test, layout>(view.object, query, entering, answer);
   for_each_ray(entering, [&](size_t i) {
-    if (met[i] != kNoTriangle) hits[i] = hit_on<Test, layout>(view, query.rays[i], met[i]);
+    const uint32_t triangle = answer.met[i];
+    if (triangle == kNoTriangle) return;
+    const LatticeRay ray = ray_of(query.rays, i);
+    const bool located = mode == RayMode::closest;
+    const TriangleHit hit = located ? answer.hits[i] : Test(ray).locate(view.object.triangle<layout>(triangle));
+    hits[i] = record_of(view, ray, triangle, hit);
   });
 }
 
@@ -44,14 +55,16 @@ void trace_all(const TraceView& view, const TraceJob& job, TraceOutcome& out) {
   const auto pass = [&] {
     parallel_ranges(job.rays.size(), 256, [&](size_t begin, size_t end) {
       if constexpr (Test::kExact) {
-        for (size_t i = begin; i < end; i += kPacketRays) {
-          const auto rays = job.rays.subspan(i, std::min(kPacketRays, end - i));
-          trace_packet<mode, Test, layout>(view, rays, out.hits.data() + i);
+        if (job.packets) {
+          for (size_t i = begin; i < end; i += kPacketRays) {
+            const auto rays = job.rays.subspan(i, std::min(kPacketRays, end - i));
+            trace_packet<mode, Test, layout>(view, rays, out.hits.data() + i);
+          }
+          return;
         }
-      } else {
-        NoCounter counter;
-        for (size_t i = begin; i < end; ++i) out.hits[i] = trace_ray<mode, Test, layout>(view, job.rays[i], counter);
       }
+      NoCounter counter;
+      for (size_t i = begin; i < end; ++i) out.hits[i] = trace_ray<mode, Test, layout>(view, job.rays[i], counter);
     });
   };
   for (int i = 0; i < job.warm_ups; ++i) pass();

@@ -130,27 +130,27 @@ void closest_hits(const SceneView& scene, const PerRay<Ray>& rays, RaySet set, P
     best[i] = {};
     t_limit[i] = rays[i].t_max;
   });
+  const BasicRay<PacketDoubles> packet = packed(rays, set);
   PacketQuery query;
   query.excluded.fill(kNoTriangle);
-  PerRay<uint32_t> met;
+  PacketAnswer answer;
+  RaySet met = kNoRays;
   detail::for_each_instance<Instances>(scene, rays, set, t_limit, [&](uint32_t index, RaySet visiting) {
-    RaySet entering = kNoRays;
-    for_each_ray(visiting, [&](size_t i) {
-      LatticeRay& ray = query.rays[i];
-      if (!detail::enter_instance(scene, index, rays[i], ray)) return;
-      query.s_limit[i] = best[i].instance == kNone ? ray.s_max : detail::limit_in_lattice(ray, t_limit[i]);
-      if (query.s_limit[i] >= 0) entering |= set_of(i);
-    });
+    const PacketTruths enters = detail::enter_instance(scene, index, packet, query.rays);
+    const PacketFloats limit = detail::limit_in_lattice(query.rays, PacketDoubles(t_limit));
+    query.s_limit = select(PacketTruths::in(met), limit, query.rays.s_max);
+    const RaySet entering = visiting & (enters & !(query.s_limit < 0)).rays();
+    if (entering == kNoRays) return kNoRays;
     const ObjectView& object = scene.objects[scene.instances[index].object].tree;
     Instances::Sides::with_test(scene, index, [&]<class Test>() {
-      traverse<RayMode::closest, Test, Instances::kLayout>(object, query, entering, met);
+      traverse<RayMode::closest, Test, Instances::kLayout>(object, query, entering, answer);
     });
     for_each_ray(entering, [&](size_t i) {
-      if (met[i] == kNoTriangle) return;
-      const LatticeRay& ray = query.rays[i];
-      const TriangleHit hit = ExactTest(ray).locate(object.triangle<Instances::kLayout>(met[i]));
-      reduce(best[i], {ray.t_at(hit.s), hit.u, hit.v, index, met[i]});
+      if (answer.met[i] == kNoTriangle) return;
+      const TriangleHit& hit = answer.hits[i];
+      reduce(best[i], {ray_of(query.rays, i).t_at(hit.s), hit.u, hit.v, index, answer.met[i]});
       t_limit[i] = best[i].t;
+      met |= set_of(i);
     });
     return kNoRays;
   });
@@ -161,21 +161,21 @@ template <class Instances>
 RaySet any_hits(const SceneView& scene, const PerRay<Ray>& rays, const PerRay<Excluded>& excluded, RaySet set) {
   PerRay<double> t_limit{};
   for_each_ray(set, [&](size_t i) { t_limit[i] = rays[i].t_max; });
+  const BasicRay<PacketDoubles> packet = packed(rays, set);
   PacketQuery query;
-  PerRay<uint32_t> met;
+  PacketAnswer answer;
   RaySet shadowed = kNoRays;
   detail::for_each_instance<Instances>(scene, rays, set, t_limit, [&](uint32_t index, RaySet visiting) {
-    RaySet entering = kNoRays;
-    for_each_ray(visiting, [&](size_t i) {
-      if (!detail::enter_instance(scene, index, rays[i], query.rays[i])) return;
-      query.s_limit[i] = query.rays[i].s_max;
+    const RaySet entering = visiting & detail::enter_instance(scene, index, packet, query.rays).rays();
+    if (entering == kNoRays) return kNoRays;
+    query.s_limit = query.rays.s_max;
+    for_each_ray(entering, [&](size_t i) {
       query.excluded[i] = excluded[i].instance == index ? excluded[i].triangle : kNoTriangle;
-      entering |= set_of(i);
     });
     const ObjectView& object = scene.objects[scene.instances[index].object].tree;
-    traverse<RayMode::any, ExactTest, Instances::kLayout>(object, query, entering, met);
+    traverse<RayMode::any, ExactTest, Instances::kLayout>(object, query, entering, answer);
     RaySet done = kNoRays;
-    for_each_ray(entering, [&](size_t i) { done |= met[i] != kNoTriangle ? set_of(i) : kNoRays; });
+    for_each_ray(entering, [&](size_t i) { done |= answer.met[i] != kNoTriangle ? set_of(i) : kNoRays; });
     shadowed |= done;
     return done;
   });

@@ -37,21 +37,11 @@ struct TraceView {
 /// Which triangle test the kernel runs. All but the exact one are baselines, and take a ray that is not snapped.
 enum class TriangleTest { exact, moller_trumbore, woop };
 
-/// Takes a ray into the object's lattice; false if it does not pass the object's box.
-template <class Test>
-KD_HD KD_INLINE bool enter_object(const TraceView& view, const RayRecord& r, LatticeRay& ray) {
-  const Vec3d origin = view.to_lattice.apply_point({r.ox, r.oy, r.oz});
-  const Vec3d direction = view.to_lattice.apply_vector({r.dx, r.dy, r.dz});
-  return Test::kExact ? snap_ray(origin, direction, r.t_min, r.t_max, view.object.bits, ray)
-                      : float_ray(origin, direction, r.t_min, r.t_max, view.object.bits, ray);
-}
-
 KD_HD KD_INLINE HitRecord miss_of(const RayRecord& r) { return {r.t_max, -1, 0, 0}; }
 
-/// Of a triangle that the ray meets.
-template <class Test, TriangleLayout layout>
-KD_HD KD_INLINE HitRecord hit_on(const TraceView& view, const LatticeRay& ray, uint32_t triangle) {
-  const auto hit = Test{ray}.locate(view.object.triangle<layout>(triangle));
+/// Of a triangle that the ray meets, and where.
+template <class Hit>
+KD_HD KD_INLINE HitRecord record_of(const TraceView& view, const LatticeRay& ray, uint32_t triangle, const Hit& hit) {
   const uint32_t source = view.source_primitives ? view.source_primitives[triangle] : triangle;
   return {static_cast<float>(ray.t_at(hit.s)), static_cast<int32_t>(source), static_cast<float>(hit.u),
           static_cast<float>(hit.v)};
@@ -59,10 +49,15 @@ KD_HD KD_INLINE HitRecord hit_on(const TraceView& view, const LatticeRay& ray, u
 
 template <RayMode mode, class Test, TriangleLayout layout, class Counter>
 KD_HD inline HitRecord trace_ray(const TraceView& view, const RayRecord& r, Counter& counter) {
+  const Vec3d origin = view.to_lattice.apply_point({r.ox, r.oy, r.oz});
+  const Vec3d direction = view.to_lattice.apply_vector({r.dx, r.dy, r.dz});
   LatticeRay ray;
-  if (!enter_object<Test>(view, r, ray)) return miss_of(r);
+  const bool enters = Test::kExact ? snap_ray(origin, direction, r.t_min, r.t_max, view.object.bits, ray)
+                                   : float_ray(origin, direction, r.t_min, r.t_max, view.object.bits, ray);
+  if (!enters) return miss_of(r);
   const uint32_t triangle = traverse<mode, Test, layout>(view.object, ray, ray.s_max, kNoTriangle, counter);
-  return triangle == kNoTriangle ? miss_of(r) : hit_on<Test, layout>(view, ray, triangle);
+  if (triangle == kNoTriangle) return miss_of(r);
+  return record_of(view, ray, triangle, Test{ray}.locate(view.object.triangle<layout>(triangle)));
 }
 
 struct TraceJob {
@@ -73,6 +68,7 @@ struct TraceJob {
   bool count_steps = false;                 // CPU only: one more pass that counts
   TriangleTest test = TriangleTest::exact;  // of float32 vertices the exact test is none
   TriangleLayout layout = TriangleLayout::expanded;
+  bool packets = true;  // CPU and the exact test only: rays go in packets, as they follow one another; the same hits
 };
 
 /// Calls visit.operator()<Test>() for a triangle test.

@@ -1,6 +1,7 @@
 // Packets against the same rays one by one.
 #include <doctest/doctest.h>
 
+#include <cstring>
 #include <limits>
 
 #include "core/hierarchy.h"
@@ -12,6 +13,7 @@ using namespace kd::test;
 
 namespace {
 
+constexpr RaySet kAllRays = first_rays(kPacketRays);
 constexpr float kFloatInfinity = std::numeric_limits<float>::infinity();
 
 /// How many packets were compared, of how many rays, and how many hits.
@@ -19,22 +21,33 @@ struct Tally {
   int packets = 0, rays = 0, hits = 0;
 };
 
-/// Some rays of a packet: aimed each for itself, or beside the first as a camera's are. Some start or end on the way.
-RaySet random_packet(const Traced& traced, Random& random, PerRay<LatticeRay>& rays) {
+/// Rays for a packet: aimed each for itself, or beside the first as a camera's are. Some start or end on the way.
+PerRay<Ray> random_rays(const Traced& traced, Random& random) {
   const int bits = traced.lattice.bits;
   const double top = lattice_max(bits);
   const PlainRay first = adversarial_ray(traced.shape, bits, random);
   const bool coherent = random.chance(0.6);
-  RaySet set = kNoRays;
-  for (size_t i = 0; i < kPacketRays; ++i) {
+  PerRay<Ray> rays;
+  for (Ray& ray : rays) {
     PlainRay plain = coherent ? first : adversarial_ray(traced.shape, bits, random);
     if (coherent && random.chance(0.7)) plain.direction = plain.direction + random.vector(length(plain.direction) / 50);
     const double reach = top / std::fmax(length(plain.direction), 1e-30);
     const double t_min = random.chance(0.1) ? random.unit() * reach : 0;
     const double t_max = random.chance(0.1) ? t_min + random.unit() * reach : 1e300;
-    if (random.chance(0.9) && snap_ray(plain.origin, plain.direction, t_min, t_max, bits, rays[i])) set |= set_of(i);
+    ray = {plain.origin, plain.direction, t_min, t_max};
   }
-  return set;
+  return rays;
+}
+
+/// Takes rays onto the grid together.
+RaySet snap(const PerRay<Ray>& rays, int bits, LatticePacket& packet) {
+  const BasicRay<PacketDoubles> p = packed(rays, kAllRays);
+  return snap_ray(p.origin, p.direction, p.t_min, p.t_max, bits, packet).rays();
+}
+
+template <class T>
+bool same_bits(const T& a, const T& b) {
+  return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
 void compare(const Traced& traced, int packets, uint64_t seed, Tally& tally) {
@@ -42,28 +55,40 @@ void compare(const Traced& traced, int packets, uint64_t seed, Tally& tally) {
   const ObjectView view = traced.view();
   NoCounter counter;
   for (int n = 0; n < packets; ++n) {
+    const PerRay<Ray> rays = random_rays(traced, random);
     PacketQuery query;
-    const RaySet set = random_packet(traced, random, query.rays);
-    query.s_limit.fill(1e30f);
+    // Sometimes not all take part.
+    const RaySet set = snap(rays, view.bits, query.rays) & (random.chance(0.25) ? 0xb5 : kAllRays);
+    PerRay<LatticeRay> alone;
+    for_each_ray(set, [&](size_t i) {
+      REQUIRE(snap_ray(rays[i].origin, rays[i].direction, rays[i].t_min, rays[i].t_max, view.bits, alone[i]));
+    });
+    alignas(32) PerRay<float> s_limit;
+    s_limit.fill(1e30f);
     query.excluded.fill(kNoTriangle);
-    const auto compare_closest = [&](PerRay<uint32_t>& met) {
-      traverse<RayMode::closest>(view, query, set, met);
+
+    const auto compare_closest = [&] {
+      query.s_limit = PacketFloats(s_limit);
+      PacketAnswer answer;
+      traverse<RayMode::closest>(view, query, set, answer);
       for_each_ray(set, [&](size_t i) {
-        CHECK(met[i] == traverse<RayMode::closest>(view, query.rays[i], query.s_limit[i], query.excluded[i], counter));
+        const uint32_t met = traverse<RayMode::closest>(view, alone[i], s_limit[i], query.excluded[i], counter);
+        CHECK(answer.met[i] == met);
+        if (met == kNoTriangle) return;
+        CHECK(same_bits(answer.hits[i], ExactTest(alone[i]).locate(traced.triangles[met])));
       });
+      return answer.met;
     };
     const auto compare_any = [&] {
-      PerRay<uint32_t> met;
-      traverse<RayMode::any>(view, query, set, met);
+      PacketAnswer answer;
+      traverse<RayMode::any>(view, query, set, answer);
       for_each_ray(set, [&](size_t i) {
-        const uint32_t alone =
-            traverse<RayMode::any>(view, query.rays[i], query.s_limit[i], query.excluded[i], counter);
-        CHECK((met[i] == kNoTriangle) == (alone == kNoTriangle));
-        CHECK((met[i] == kNoTriangle || met[i] != query.excluded[i]));
+        const uint32_t some = traverse<RayMode::any>(view, alone[i], s_limit[i], query.excluded[i], counter);
+        CHECK((answer.met[i] == kNoTriangle) == (some == kNoTriangle));
+        CHECK((answer.met[i] == kNoTriangle || answer.met[i] != query.excluded[i]));
       });
     };
-    PerRay<uint32_t> first;
-    compare_closest(first);
+    const PerRay<uint32_t> first = compare_closest();
     compare_any();
     ++tally.packets;
     for_each_ray(set, [&](size_t i) {
@@ -71,10 +96,9 @@ void compare(const Traced& traced, int packets, uint64_t seed, Tally& tally) {
       tally.hits += first[i] != kNoTriangle;
       // Then without what was met, or only up to there.
       query.excluded[i] = random.chance(0.5) ? first[i] : kNoTriangle;
-      query.s_limit[i] = random.chance(0.5) ? static_cast<float>(random.unit() * lattice_max(view.bits)) : 1e30f;
+      s_limit[i] = random.chance(0.5) ? static_cast<float>(random.unit() * lattice_max(view.bits)) : 1e30f;
     });
-    PerRay<uint32_t> second;
-    compare_closest(second);
+    compare_closest();
     compare_any();
   }
 }
@@ -111,13 +135,55 @@ TEST_CASE("packets: the compact layout meets the same") {
   Random random(9);
   for (int n = 0; n < 1000; ++n) {
     PacketQuery query;
-    const RaySet set = random_packet(traced, random, query.rays);
-    query.s_limit.fill(1e30f);
+    const RaySet set = snap(random_rays(traced, random), bits, query.rays);
+    query.s_limit = query.rays.s_max;
     query.excluded.fill(kNoTriangle);
-    PerRay<uint32_t> met, expected;
-    traverse<RayMode::closest, ExactTest, TriangleLayout::compact>(compact, query, set, met);
+    PacketAnswer answer, expected;
+    traverse<RayMode::closest, ExactTest, TriangleLayout::compact>(compact, query, set, answer);
     traverse<RayMode::closest>(traced.view(), query, set, expected);
-    for_each_ray(set, [&](size_t i) { CHECK(met[i] == expected[i]); });
+    for_each_ray(set, [&](size_t i) { CHECK(answer.met[i] == expected.met[i]); });
+  }
+}
+
+TEST_CASE("packets: a ray is snapped as it is alone") {
+  for (const int bits : {1, 10, 21, 24}) {
+    CAPTURE(bits);
+    const Traced traced(soup_shape(bits, 20, Soup::mixed, 7), bits);
+    Random random(11);
+    int entering = 0, missing = 0;
+    for (int n = 0; n < 4000; ++n) {
+      PerRay<Ray> rays = random_rays(traced, random);
+      for (Ray& ray : rays) {
+        if (random.chance(0.3)) ray.origin = random.vector(std::exp2(random.real(-30, 60)));
+        if (random.chance(0.1)) ray.direction = ray.direction * std::exp2(random.real(-1000, 900));
+        if (random.chance(0.1)) ray.direction.set(static_cast<int>(random.integer(0, 2)), 0);
+        if (random.chance(0.02)) ray.direction = {0, -0.0, 0};
+        if (random.chance(0.02)) ray.origin.x = std::numeric_limits<double>::quiet_NaN();
+        if (random.chance(0.02)) ray.direction.y = std::numeric_limits<double>::infinity();
+        if (random.chance(0.02)) ray.t_max = ray.t_min - 1;
+      }
+      LatticePacket packet;
+      const RaySet set = snap(rays, bits, packet);
+      for (size_t i = 0; i < kPacketRays; ++i) {
+        LatticeRay alone;
+        const bool enters = snap_ray(rays[i].origin, rays[i].direction, rays[i].t_min, rays[i].t_max, bits, alone);
+        CHECK(((set & set_of(i)) != kNoRays) == enters);
+        ++(enters ? entering : missing);
+        if (!enters) continue;
+        const LatticeRay together = ray_of(packet, i);
+        CHECK(same_bits(together.origin, alone.origin));
+        CHECK(same_bits(together.direction, alone.direction));
+        CHECK(same_bits(together.inverse, alone.inverse));
+        CHECK(together.axis == alone.axis);
+        CHECK(same_bits(together.s_min, alone.s_min));
+        CHECK(same_bits(together.s_max, alone.s_max));
+        CHECK(same_bits(together.s_exit, alone.s_exit));
+        CHECK(same_bits(together.t_base, alone.t_base));
+        CHECK(same_bits(together.t_scale, alone.t_scale));
+      }
+    }
+    CHECK(entering > 4000);
+    CHECK(missing > 4000);
   }
 }
 
@@ -152,5 +218,5 @@ TEST_CASE("packets: numbers are computed as a float's are") {
       CHECK(holds(x >= y) == (a[i] >= b[i]));
     }
   }
-  for (RaySet set = 0; set <= first_rays(kPacketRays); ++set) CHECK(PacketTruths::in(set).rays() == set);
+  for (RaySet set = 0; set <= kAllRays; ++set) CHECK(PacketTruths::in(set).rays() == set);
 }

@@ -74,6 +74,10 @@ TEST_CASE("trace: hits are those of looking at every triangle, numbered as in th
     const auto compact = render::cpu_trace(*file, job, 0);
     REQUIRE(compact);
     CHECK(std::memcmp(compact->hits.data(), closest->hits.data(), rays.size() * sizeof(render::HitRecord)) == 0);
+    job.packets = false;
+    const auto singly = render::cpu_trace(*file, job, 0);
+    REQUIRE(singly);
+    CHECK(std::memcmp(singly->hits.data(), closest->hits.data(), rays.size() * sizeof(render::HitRecord)) == 0);
     // A soup shares no vertices: what is twice as long beyond 21 bits takes more than it saves.
     CHECK((compact->device_bytes < closest->device_bytes) == (bits <= 21));
     CHECK(closest->seconds.size() == 2);

@@ -110,16 +110,20 @@ struct ThroughOneSided : ThroughHierarchy<layout> {
 
 namespace detail {
 
-/// Takes the ray into the instance's lattice; false if it does not pass the object's box.
-KD_HD KD_INLINE bool enter_instance(const SceneView& scene, uint32_t index, const Ray& ray, LatticeRay& lattice_ray) {
+/// Takes the ray, or a packet's, into the instance's lattice; false if it does not pass the object's box.
+template <class RayType, class LatticeRayType>
+KD_HD KD_INLINE auto enter_instance(const SceneView& scene, uint32_t index, const RayType& ray,
+                                    LatticeRayType& lattice_ray) {
   const InstanceView& instance = scene.instances[index];
   return snap_ray(instance.to_lattice.apply_point(ray.origin), instance.to_lattice.apply_vector(ray.direction),
                   ray.t_min, ray.t_max, scene.objects[instance.object].tree.bits, lattice_ray);
 }
 
 /// The distance in the lattice of `t_limit`, rounded up.
-KD_HD KD_INLINE float limit_in_lattice(const LatticeRay& ray, double t_limit) {
-  return static_cast<float>(min_of((t_limit - ray.t_base) / ray.t_scale, 1e30)) * (1 + 0x1p-20f);
+template <class LatticeRayType>
+KD_HD KD_INLINE auto limit_in_lattice(const LatticeRayType& ray, typename LatticeRayType::Double t_limit) {
+  using Double = typename LatticeRayType::Double;
+  return to_float(min_of((t_limit - ray.t_base) / ray.t_scale, Double(1e30))) * (1 + 0x1p-20f);
 }
 
 }  // namespace detail
