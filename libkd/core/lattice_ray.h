@@ -21,7 +21,7 @@
 
 namespace kd {
 
-/// Of one ray, or of a packet's (core/packet.h).
+/// Of one ray, or of a packet's (core/lattice_packet.h).
 template <class FloatType, class DoubleType, class AxisType>
 struct BasicLatticeRay {
   using Float = FloatType;

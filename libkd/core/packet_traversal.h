@@ -5,7 +5,8 @@
 // The rays of a packet share their axis and the octant of their directions, so that they meet a node's children in one
 // order; `traverse` below sorts any eight rays into such packets. Each keeps a cell interval of its own, by the same
 // arithmetic and margins as a ray alone, and so loses no cell; while some enter a child, the others wait. The float32
-// filter of the exact test rejects triangles for all rays at once; what it leaves is decided ray by ray.
+// filter of the exact test rejects triangles for all rays at once; where it is certain of some that pass through, these
+// get their distances together, and what it leaves undecided is decided ray by ray.
 #pragma once
 
 #include <limits>

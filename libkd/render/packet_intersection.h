@@ -48,7 +48,7 @@ struct HierarchyPacket {
             first.rising_z};
   }
 
-  /// Calls visit(instance, set); it returns those of the lanes that have found what they look for.
+  /// Calls visit(instance, rays); it returns those of them that have found what they look for.
   template <class Visit>
   void for_each(RaySet set, const Visit& visit) const {
     const BoxTest<PacketFloats> test = box_tests(set);
