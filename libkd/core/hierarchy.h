@@ -66,26 +66,33 @@ struct BoxTest {
   }
 };
 
-/// Of one ray; `bounds` holds all boxes.
-KD_HD KD_INLINE BoxTest<float> box_test(const Ray& ray, const HierarchyNode& bounds) {
-  BoxTest<float> test;
+/// Of one ray, or of a packet's but for what rises; `bounds` holds all boxes.
+template <class Double>
+KD_HD KD_INLINE auto slabs_of(const BasicRay<Double>& ray, const HierarchyNode& bounds) {
+  using std::copysign, std::fabs;
+  BoxTest<decltype(to_float(Double{}))> test;
   test.t_min = -rounded_up(-ray.t_min);
-  test.rising_x = ray.direction.x >= 0;
-  test.rising_y = ray.direction.y >= 0;
-  test.rising_z = ray.direction.z >= 0;
-  const Vec3d d = ray.direction;
-  const double largest = max_of(std::fabs(d.x), std::fabs(d.y), std::fabs(d.z)), least = 0x1p-60 * largest;
+  const Vec3<Double> d = ray.direction;
+  const Double largest = max_of(fabs(d.x), fabs(d.y), fabs(d.z)), least = 0x1p-60 * largest;
   const auto set = [&](int axis) {
-    const double o = ray.origin[axis], per_unit = 1 / std::copysign(max_of(std::fabs(d[axis]), least), d[axis]);
+    const Double o = ray.origin[axis], per_unit = 1 / copysign(max_of(fabs(d[axis]), least), d[axis]);
     const float extent = largest_of(std::fabs(bounds.lo[axis]), std::fabs(bounds.hi[axis]));
-    const double margin = (extent + std::fabs(o)) * (0x1p-22 * std::fabs(per_unit) + 0x1p-146) + 0x1p-146;
-    test.inverse.set(axis, static_cast<float>(per_unit));
-    test.enter.set(axis, static_cast<float>(-o * per_unit - margin));
-    test.leave.set(axis, static_cast<float>(-o * per_unit + margin));
+    const Double margin = (extent + fabs(o)) * (0x1p-22 * fabs(per_unit) + 0x1p-146) + 0x1p-146;
+    test.inverse.set(axis, to_float(per_unit));
+    test.enter.set(axis, to_float(-o * per_unit - margin));
+    test.leave.set(axis, to_float(-o * per_unit + margin));
   };
   set(0);
   set(1);
   set(2);
+  return test;
+}
+
+KD_HD KD_INLINE BoxTest<float> box_test(const Ray& ray, const HierarchyNode& bounds) {
+  BoxTest<float> test = slabs_of(ray, bounds);
+  test.rising_x = ray.direction.x >= 0;
+  test.rising_y = ray.direction.y >= 0;
+  test.rising_z = ray.direction.z >= 0;
   return test;
 }
 

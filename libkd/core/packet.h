@@ -186,6 +186,14 @@ struct PacketDoubles {
   KD_INLINE friend PacketDoubles max_of(PacketDoubles a, PacketDoubles b) {
     return {a.low > b.low ? a.low : b.low, a.high > b.high ? a.high : b.high};
   }
+  KD_INLINE friend PacketDoubles max_of(PacketDoubles a, PacketDoubles b, PacketDoubles c) {
+    return max_of(max_of(a, b), c);
+  }
+  KD_INLINE friend PacketFloats rounded_up(PacketDoubles a) {
+    const PacketFloats nearest = to_float(a);
+    const Ints bits = reinterpret_cast<Ints>(nearest.lanes), up = bits + (nearest.lanes < 0 ? splat(-1) : splat(1));
+    return (PacketDoubles(nearest) < a).lanes ? reinterpret_cast<Floats>(up) : nearest.lanes;
+  }
   KD_INLINE friend PacketFloats to_float(PacketDoubles a) {
     using Half = float __attribute__((vector_size(2 * kLanes)));
     return __builtin_shufflevector(__builtin_convertvector(a.low, Half), __builtin_convertvector(a.high, Half), 0, 1, 2,

@@ -22,36 +22,12 @@ struct HierarchyPacket {
   };
 
   const SceneView& scene;
-  const PerRay<Ray>& rays;
+  BoxTest<PacketFloats> test;
   PerRay<double>& t_limit;
-
-  BoxTest<PacketFloats> box_tests(RaySet set) const {
-    PerRay<BoxTest<float>> each;
-    for_each_ray(set, [&](size_t i) { each[i] = box_test(rays[i], scene.hierarchy[0]); });
-    const auto gather = [&](const auto& number_of) {
-      PerRay<float> numbers{};
-      for_each_ray(set, [&](size_t i) { numbers[i] = number_of(each[i]); });
-      return PacketFloats(numbers);
-    };
-    const auto gather_vector = [&](Vec3f BoxTest<float>::*vector) {
-      return Vec3<PacketFloats>{gather([&](const BoxTest<float>& one) { return (one.*vector).x; }),
-                                gather([&](const BoxTest<float>& one) { return (one.*vector).y; }),
-                                gather([&](const BoxTest<float>& one) { return (one.*vector).z; })};
-    };
-    const BoxTest<float>& first = each[first_of(set)];
-    return {gather_vector(&BoxTest<float>::inverse),
-            gather_vector(&BoxTest<float>::enter),
-            gather_vector(&BoxTest<float>::leave),
-            gather([](const BoxTest<float>& one) { return one.t_min; }),
-            first.rising_x,
-            first.rising_y,
-            first.rising_z};
-  }
 
   /// Calls visit(instance, rays); it returns those of them that have found what they look for.
   template <class Visit>
   void for_each(RaySet set, const Visit& visit) const {
-    const BoxTest<PacketFloats> test = box_tests(set);
     PerRay<float> limits{};
     const auto take_limits = [&](RaySet of) {
       for_each_ray(of, [&](size_t i) { limits[i] = rounded_up(t_limit[i]); });
@@ -100,20 +76,22 @@ struct HierarchyPacket {
 
 /// The same for packets as Instances::for_each is for a ray; `visit` as for HierarchyPacket.
 template <class Instances, class Visit>
-void for_each_instance(const SceneView& scene, const PerRay<Ray>& rays, RaySet set, PerRay<double>& t_limit,
+void for_each_instance(const SceneView& scene, const BasicRay<PacketDoubles>& rays, RaySet set, PerRay<double>& t_limit,
                        const Visit& visit) {
   if constexpr (Instances::kOnlyOne) {
     visit(0, set);
   } else if (scene.instance_count != 0) {
-    PerRay<uint32_t> octant{};
-    for_each_ray(set, [&](size_t i) {
-      const Vec3d d = rays[i].direction;
-      octant[i] = (d.x >= 0 ? 4u : 0u) | (d.y >= 0 ? 2u : 0u) | (d.z >= 0 ? 1u : 0u);
-    });
-    const HierarchyPacket packet{scene, rays, t_limit};
+    const Vec3<PacketDoubles>& d = rays.direction;
+    const RaySet up_x = (d.x >= 0).rays(), up_y = (d.y >= 0).rays(), up_z = (d.z >= 0).rays();
+    HierarchyPacket packet{scene, slabs_of(rays, scene.hierarchy[0]), t_limit};
     while (set != kNoRays) {
-      RaySet alike = kNoRays;
-      for_each_ray(set, [&](size_t i) { alike |= octant[i] == octant[first_of(set)] ? set_of(i) : kNoRays; });
+      const RaySet first = set & (0u - set);
+      packet.test.rising_x = (up_x & first) != kNoRays;
+      packet.test.rising_y = (up_y & first) != kNoRays;
+      packet.test.rising_z = (up_z & first) != kNoRays;
+      const auto as_first = [&](RaySet up, bool rises) { return rises ? up : ~up; };
+      const RaySet alike = set & as_first(up_x, packet.test.rising_x) & as_first(up_y, packet.test.rising_y) &
+                           as_first(up_z, packet.test.rising_z);
       packet.for_each(alike, visit);
       set &= ~alike;
     }
@@ -135,7 +113,7 @@ void closest_hits(const SceneView& scene, const PerRay<Ray>& rays, RaySet set, P
   query.excluded.fill(kNoTriangle);
   PacketAnswer answer;
   RaySet met = kNoRays;
-  detail::for_each_instance<Instances>(scene, rays, set, t_limit, [&](uint32_t index, RaySet visiting) {
+  detail::for_each_instance<Instances>(scene, packet, set, t_limit, [&](uint32_t index, RaySet visiting) {
     const PacketTruths enters = detail::enter_instance(scene, index, packet, query.rays);
     const PacketFloats limit = detail::limit_in_lattice(query.rays, PacketDoubles(t_limit));
     query.s_limit = select(PacketTruths::in(met), limit, query.rays.s_max);
@@ -165,7 +143,7 @@ RaySet any_hits(const SceneView& scene, const PerRay<Ray>& rays, const PerRay<Ex
   PacketQuery query;
   PacketAnswer answer;
   RaySet shadowed = kNoRays;
-  detail::for_each_instance<Instances>(scene, rays, set, t_limit, [&](uint32_t index, RaySet visiting) {
+  detail::for_each_instance<Instances>(scene, packet, set, t_limit, [&](uint32_t index, RaySet visiting) {
     const RaySet entering = visiting & detail::enter_instance(scene, index, packet, query.rays).rays();
     if (entering == kNoRays) return kNoRays;
     query.s_limit = query.rays.s_max;

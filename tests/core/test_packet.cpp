@@ -187,6 +187,32 @@ TEST_CASE("packets: a ray is snapped as it is alone") {
   }
 }
 
+TEST_CASE("packets: the way through boxes is computed as a ray's is") {
+  Random random(12);
+  for (int n = 0; n < 20000; ++n) {
+    PerRay<Ray> rays;
+    for (Ray& ray : rays) {
+      ray = {random.vector(std::exp2(random.real(-20, 20))), random.vector(1), random.chance(0.5) ? 0 : random.unit(),
+             1e300};
+      if (random.chance(0.2)) ray.direction.set(static_cast<int>(random.integer(0, 2)), 0);
+      ray.direction = {std::fabs(ray.direction.x), -std::fabs(ray.direction.y), std::fabs(ray.direction.z)};
+      if (ray.direction.y == 0) ray.direction.y = -1;
+    }
+    const Vec3f lo = vec_cast<float>(random.vector(8)), size = vec_cast<float>(random.vector(4));
+    const HierarchyNode node{lo, 0, {lo.x + std::fabs(size.x), lo.y + std::fabs(size.y), lo.z + std::fabs(size.z)}, 1};
+    auto together = slabs_of(packed(rays, kAllRays), node);
+    together.rising_x = together.rising_z = true;
+    together.rising_y = false;
+    const Passage<PacketFloats> passage = together.pass(node, 100.0f);
+    for (size_t i = 0; i < kPacketRays; ++i) {
+      const Passage<float> alone = box_test(rays[i], node).pass(node, 100.0f);
+      CHECK(same_bits(passage.enter[i], alone.enter));
+      CHECK(same_bits(passage.leave[i], alone.leave));
+      CHECK((passage.passes().rays() >> i & 1) == alone.passes());
+    }
+  }
+}
+
 TEST_CASE("packets: numbers are computed as a float's are") {
   Random random(4);
   const std::array<float, 8> special{0, -0.0f, 1, -1, kFloatInfinity, -kFloatInfinity, 0x1p-140f, 3e38f};
@@ -212,6 +238,8 @@ TEST_CASE("packets: numbers are computed as a float's are") {
       CHECK(same(of(largest_of(x, y, z)), largest_of(a[i], b[i], c[i])));
       CHECK(same(of(fabs(x)), std::fabs(a[i])));
       CHECK(same(of(a[0]), a[0]));
+      const double wide = static_cast<double>(a[i]) * (1 + 0x1p-30);
+      CHECK((same(of(rounded_up(PacketDoubles(x) * (1 + 0x1p-30))), rounded_up(wide)) || std::isnan(wide)));
       CHECK(holds(signs_differ(x, y, z)) == signs_differ(a[i], b[i], c[i]));
       CHECK(holds(x < y) == (a[i] < b[i]));
       CHECK(holds((y <= z) & !(x > y)) == (!(a[i] > b[i]) && b[i] <= c[i]));
