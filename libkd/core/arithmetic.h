@@ -44,7 +44,6 @@ KD_HD KD_INLINE constexpr T select(bool which, T a, T b) {
   return which ? a : b;
 }
 KD_HD KD_INLINE constexpr bool any(bool holds) { return holds; }
-KD_HD KD_INLINE constexpr bool all(bool holds) { return holds; }
 KD_HD KD_INLINE constexpr float to_float(double x) { return static_cast<float>(x); }
 
 /// Whether not all of three numbers have the same sign bit.
