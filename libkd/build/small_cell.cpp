@@ -124,14 +124,12 @@ Split choose_split(const Context& context, const CellCosts& costs, const Box3u& 
       }
       Ints flat{};
       for (size_t i = 0; i < n; ++i) flat -= (splat(lo[i]) == plane) & (splat(hi[i]) == plane);
-      // At the cell's own face a split is progress if it puts the triangles in the face into a flat cell of their own.
+      // At the cell's own face a split puts the triangles in the face into a flat cell of their own.
       const Floats never = splat(std::numeric_limits<float>::infinity());
-      const Ints at_lo = plane == lane_costs.lo, at_hi = plane == lane_costs.hi;
-      const Ints all = flat == static_cast<int32_t>(n);
       const Floats with_below = lane_costs.split(plane, below + flat, above);
       const Floats with_above = lane_costs.split(plane, below, above + flat);
-      best.consider(at_hi | (at_lo & all) ? never : with_below, plane, below + flat, above, axis << 1 | 1);
-      best.consider(at_lo | (at_hi & all) ? never : with_above, plane, below, above + flat, axis << 1);
+      best.consider(plane == lane_costs.hi ? never : with_below, plane, below + flat, above, axis << 1 | 1);
+      best.consider(plane == lane_costs.lo ? never : with_above, plane, below, above + flat, axis << 1);
     }
   }
   return best.split();

@@ -30,8 +30,9 @@ Split best_split(const Context& context, std::span<const Event> events, int axis
     if (plane > lo && plane < hi) {
       consider(plane, below + flats, above, true);
       if (flats > 0) consider(plane, below, above + flats, false);
-    } else if (flats > 0 && flats < count) {
-      // At the cell's own face a split is progress if it puts the triangles in the face into a flat cell of their own.
+    } else if (flats > 0) {
+      // At the cell's own face a split puts the triangles in the face into a flat cell of their own, even if they are
+      // all that the cell has: rays that leave it by another face then need not test them.
       if (plane == lo) consider(plane, flats, above, true);
       if (plane == hi) consider(plane, below, flats, false);
     }

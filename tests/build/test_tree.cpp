@@ -179,6 +179,26 @@ TEST_CASE("tree: one triangle, a flat mesh, a line of a lattice, nothing") {
   CHECK(tree_of(subject("none", {}, 10)).references.empty());
 }
 
+TEST_CASE("tree: a wall in a face of its cell is put into a flat cell") {
+  Shape wall;
+  for (uint32_t i = 0; i < 10; ++i) {
+    for (uint32_t j = 0; j < 20; ++j) wall.add_wall({50 * i, 0, 50 * j}, {50 * i + 50, 0, 50 * j + 50});
+  }
+  const auto of_wall = static_cast<uint32_t>(wall.triangles.size());
+  for (uint32_t i = 0; i < 1000; ++i) {  // beside it, and as high as the cube
+    const Vec3u p{600 + 40 * (i / 100), 100 * (i / 10 % 10), 100 * (i % 10)};
+    wall.add_triangle(p, p + Vec3u{40, 20, 30}, p + Vec3u{10, 50, 40});
+  }
+  const Subject s = subject("wall", wall, 10);
+  build::BuildSettings settings;
+  settings.costs.byte_price = 0;
+  const build::Tree tree = tree_of(s, settings);
+  for_each_node(tree.nodes, s.lattice, [&](uint32_t, Node node, const Box3u& cell, uint32_t) {
+    if (!is_leaf(node) || reference_count(node) < 2) return;
+    if (tree.references[first_reference(node)] < of_wall) CHECK(cell.lo.y == cell.hi.y);
+  });
+}
+
 TEST_CASE("tree: as good for the largest and the smallest models") {
   Subject s = subject("sphere", sphere_shape(21, 3), 21);
   s.lattice.extent = {1, 2, 0.5};
