@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "build/bisection.h"
 #include "build/clip.h"
 #include "build/context.h"
 #include "build/events.h"
@@ -27,7 +28,8 @@ struct Cell {
   std::vector<uint32_t> triangles;  // number in the cell -> number in the object, ascending
   std::array<EventList, 3> events;
   int depth = 0;
-  double weight = 1;  // share of the whole build, for progress
+  int bisections = 0;  // of the cells it is in, and then its own
+  double weight = 1;   // share of the whole build, for progress
 
   uint32_t count() const { return static_cast<uint32_t>(triangles.size()); }
 };
@@ -53,6 +55,8 @@ class Builder {
  private:
   Split choose_split(const Cell& cell) const;
   std::pair<Cell, Cell> divide(const Cell& cell, const Split& split) const;
+  Split find_split(Cell& cell);
+  BoxStack& boxes_of(const Cell& cell);
   void build_small(const Cell& cell, uint32_t slot, Subtree& out);
   void report(double weight);
 
@@ -149,6 +153,7 @@ std::pair<Cell, Cell> Builder::divide(const Cell& cell, const Split& split) cons
   for (Cell& child : children) {
     child.box = cell.box;
     child.depth = cell.depth + 1;
+    child.bisections = cell.bisections;
   }
   children[kBelow].box.hi.set(split.axis, split.plane);
   children[kAbove].box.lo.set(split.axis, split.plane);
@@ -190,8 +195,8 @@ std::pair<Cell, Cell> Builder::divide(const Cell& cell, const Split& split) cons
   return {std::move(children[kBelow]), std::move(children[kAbove])};
 }
 
-/// Leaves event lists behind: the boxes they describe are all that small cells need.
-void Builder::build_small(const Cell& cell, uint32_t slot, Subtree& out) {
+/// The boxes that the cell's events describe, alone on this thread's stack.
+BoxStack& Builder::boxes_of(const Cell& cell) {
   BoxStack& stack = stacks_.local();
   const size_t n = cell.count();
   stack.size = 0;
@@ -206,7 +211,22 @@ void Builder::build_small(const Cell& cell, uint32_t slot, Subtree& out) {
     }
   }
   stack.size = n;
-  build_small_cell(context_, cell.box, cell.depth, stack, 0, slot, out);
+  return stack;
+}
+
+/// Leaves event lists behind: boxes are all that small cells need.
+void Builder::build_small(const Cell& cell, uint32_t slot, Subtree& out) {
+  build_small_cell(context_, cell.box, cell.depth, cell.bisections, boxes_of(cell), 0, slot, out);
+}
+
+/// The split to make; none for a leaf. Counts a bisection.
+Split Builder::find_split(Cell& cell) {
+  if (cell.depth >= context_.max_depth) return {};
+  const Split cheapest = choose_split(cell);
+  if (pays(context_, cell.box, cell.count(), cheapest)) return cheapest;
+  if (cell.bisections == kMostBisections) return {};
+  ++cell.bisections;
+  return bisection(context_, cell.box, boxes_of(cell), 0);
 }
 
 void Builder::build(Cell cell, uint32_t slot, Subtree& out) {
@@ -216,8 +236,8 @@ void Builder::build(Cell cell, uint32_t slot, Subtree& out) {
     report(cell.weight);
     return;
   }
-  const Split split = cell.depth < context_.max_depth ? choose_split(cell) : Split{};
-  if (!pays(context_, cell.box, cell.count(), split)) {
+  const Split split = find_split(cell);
+  if (!split.found()) {
     out.nodes[slot] = make_leaf(static_cast<uint32_t>(out.references.size()), cell.count());
     out.references.insert(out.references.end(), cell.triangles.begin(), cell.triangles.end());
     report(cell.weight);

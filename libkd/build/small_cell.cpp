@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <span>
 
+#include "build/bisection.h"
 #include "build/cost.h"
 #include "build/split.h"
 #include "core/lanes.h"
@@ -145,9 +146,10 @@ class SmallCellBuilder {
     double cost = 0;   // expected, to a ray that meets the cell
     double bytes = 0;  // of nodes and references
   };
-  Outcome build(const Box3u& cell, int depth, size_t first, uint32_t slot);
+  Outcome build(const Box3u& cell, int depth, int bisections, size_t first, uint32_t slot);
 
  private:
+  bool gains(const Box3u& cell, const CellCosts& costs, uint32_t count, const Split& split) const;
   void make_leaf_of(size_t first, size_t n, uint32_t slot);
   size_t push_children(const Box3u& cell, const Split& split, bool boxes_matter, size_t first, size_t n);
   void push_copy(size_t from);
@@ -207,7 +209,12 @@ size_t SmallCellBuilder::push_children(const Box3u& cell, const Split& split, bo
   return lower_first;
 }
 
-SmallCellBuilder::Outcome SmallCellBuilder::build(const Box3u& cell, int depth, size_t first, uint32_t slot) {
+bool SmallCellBuilder::gains(const Box3u& cell, const CellCosts& costs, uint32_t count, const Split& split) const {
+  return split.cost < costs.leaf(count) && (count <= ExpectedTests::kLinear || pays(context_, cell, count, split));
+}
+
+SmallCellBuilder::Outcome SmallCellBuilder::build(const Box3u& cell, int depth, int bisections, size_t first,
+                                                  uint32_t slot) {
   const size_t n = stack_.size - first;
   const auto count = static_cast<uint32_t>(n);
   const CellCosts costs(context_, cell, count);
@@ -217,9 +224,10 @@ SmallCellBuilder::Outcome SmallCellBuilder::build(const Box3u& cell, int depth, 
     return Outcome{costs.intersection * count, leaf_bytes(count)};
   };
   if (costs.hopeless(count) || depth >= context_.max_depth) return close();
-  const Split split = choose_split(context_, costs, cell, stack_, first, n);
-  if (!split.found() || split.cost >= costs.leaf(count)) return close();
-  if (count > ExpectedTests::kLinear && !pays(context_, cell, count, split)) return close();
+  Split split = choose_split(context_, costs, cell, stack_, first, n);
+  const bool bisected = !gains(cell, costs, count, split);
+  if (bisected) split = bisections < kMostBisections ? bisection(context_, cell, stack_, first) : Split{};
+  if (!split.found()) return close();
 
   Box3u below = cell, above = cell;
   below.hi.set(split.axis, split.plane);
@@ -236,9 +244,11 @@ SmallCellBuilder::Outcome SmallCellBuilder::build(const Box3u& cell, int depth, 
     outcome.cost += share * part.cost;
     outcome.bytes += part.bytes;
   };
-  if (split.below > 0) add(build(below, depth + 1, lower_first, child), probability.below(split.plane));
-  if (split.above > 0) add(build(above, depth + 1, first + n, child + 1), probability.above(split.plane));
-  if (outcome.cost + costs.byte * outcome.bytes < costs.leaf(count)) {
+  if (split.below > 0)
+    add(build(below, depth + 1, bisections + bisected, lower_first, child), probability.below(split.plane));
+  if (split.above > 0)
+    add(build(above, depth + 1, bisections + bisected, first + n, child + 1), probability.above(split.plane));
+  if (outcome.cost + costs.byte * outcome.bytes < (bisected ? kWorthBisecting : 1) * costs.leaf(count)) {
     stack_.size = first;
     return outcome;
   }
@@ -249,28 +259,9 @@ SmallCellBuilder::Outcome SmallCellBuilder::build(const Box3u& cell, int depth, 
 
 }  // namespace
 
-void BoxStack::reserve(size_t count) {
-  const size_t wanted = size + count;
-  if (wanted <= triangles.size()) return;
-  const size_t capacity = std::max(wanted, 2 * triangles.size());
-  for (Interval& axis : axes) {
-    axis.lo.resize(capacity);
-    axis.hi.resize(capacity);
-  }
-  triangles.resize(capacity);
-}
-
-void BoxStack::push(uint32_t triangle, const Box3u& box) {
-  for (int k = 0; k < 3; ++k) {
-    axes[static_cast<size_t>(k)].lo[size] = static_cast<int32_t>(box.lo[k]);
-    axes[static_cast<size_t>(k)].hi[size] = static_cast<int32_t>(box.hi[k]);
-  }
-  triangles[size++] = triangle;
-}
-
-void build_small_cell(const Context& context, const Box3u& cell, int depth, BoxStack& stack, size_t first,
-                      uint32_t slot, Subtree& out) {
-  SmallCellBuilder(context, stack, out).build(cell, depth, first, slot);
+void build_small_cell(const Context& context, const Box3u& cell, int depth, int bisections, BoxStack& stack,
+                      size_t first, uint32_t slot, Subtree& out) {
+  SmallCellBuilder(context, stack, out).build(cell, depth, bisections, first, slot);
 }
 
 }  // namespace kd::build

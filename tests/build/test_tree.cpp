@@ -199,6 +199,29 @@ TEST_CASE("tree: a wall in a face of its cell is put into a flat cell") {
   });
 }
 
+TEST_CASE("tree: a bundle of needles is cut along its length, and neither it nor a hub into n x n pieces") {
+  for (const uint32_t count : {60u, 400u, 1000u}) {  // of one small cell, of cells of both kinds
+    CAPTURE(count);
+    Shape bundle, hub;
+    Random random(count);
+    const auto near = [&](uint32_t x, uint32_t spread) { return x + random.integer(0, spread); };
+    for (uint32_t i = 0; i < count; ++i) {
+      const Vec3u a{near(0, 900), near(0, 900), near(0, 900)}, b = a + Vec3u{1000000, 1000000, 1000000};
+      bundle.add_triangle(a, b, b + Vec3u{near(1, 50), near(1, 50), 0});
+      const double angle = 1.5 * i / count;
+      const auto rim = [](double turn) {
+        return Vec3u{static_cast<uint32_t>(1e6 * std::cos(turn)), static_cast<uint32_t>(1e6 * std::sin(turn)), 5};
+      };
+      hub.add_triangle({0, 0, 0}, rim(angle), rim(angle + 1.5 / count));
+    }
+    const Subject needles = subject("bundle", bundle, 21), fan = subject("hub", hub, 21);
+    const build::Tree of_needles = tree_of(needles), of_fan = tree_of(fan);
+    CHECK(tree_statistics(of_needles.nodes, needles.lattice).sah_cost < 0.1 * 1.5 * count);
+    CHECK(of_needles.references.size() < 300 * size_t{count});
+    CHECK(of_fan.references.size() < 150 * size_t{count});
+  }
+}
+
 TEST_CASE("tree: as good for the largest and the smallest models") {
   Subject s = subject("sphere", sphere_shape(21, 3), 21);
   s.lattice.extent = {1, 2, 0.5};

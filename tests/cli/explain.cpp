@@ -43,7 +43,7 @@ void check_sums(const nkd::ObjectFile& file) {
   CHECK(total(t.triangle_references) == t.triangles);
   CHECK(t.median_references <= t.references_95);
   CHECK(t.references_95 <= t.most_references);
-  CHECK(t.empty_volume < 1);
+  CHECK(t.empty_volume <= doctest::Approx(1));  // all of it where every triangle lies in a flat cell: a box
   CHECK(t.empty_visits <= t.leaf_visits);
   uint64_t bytes = 0;
   for (const tools::SectionBytes& section : e.sections) bytes += section.bytes;
