@@ -109,7 +109,7 @@ Result<RenderStats> CpuRenderer::render(Strip strip, Frame& frame, const Progres
     const double share = static_cast<double>(launched++) / static_cast<double>(plan.launches());
     const uint64_t count = run_stage(stage, view.width, view.height, shared, share);
     stats.add_stage(stage.kName, stage_timer.seconds());
-    return totals[kCounter<std::decay_t<decltype(stage)>>] += count;
+    return (totals[kCounter<std::decay_t<decltype(stage)>>] += count) > 0;
   };
   Timer whole;
   run_pipeline(view, plan, launch, launch);

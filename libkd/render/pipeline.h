@@ -50,11 +50,10 @@ template <class Instances>
 constexpr Counter kCounter<Lighting<Instances>> = kShadowRays;
 
 /// Launches the stages that have work, in order. `launch(stage)` runs stage(pixel) for every pixel and may return
-/// before it is done; the next stage starts after it. `launch_and_count(stage)` waits, and returns the sum of what such
-/// stages returned so far: until a ray hits something, nothing follows that reads a surface.
-template <class Launch, class LaunchAndCount>
-void run_pipeline(const FrameView& frame, const PipelinePlan& plan, Launch&& launch,
-                  LaunchAndCount&& launch_and_count) {
+/// before it is done; the next stage starts after it. `launch_and_see(stage)` tells, too, whether such stages returned
+/// anything but 0 so far: until a ray hits something, nothing follows that reads a surface.
+template <class Launch, class LaunchAndSee>
+void run_pipeline(const FrameView& frame, const PipelinePlan& plan, Launch&& launch, LaunchAndSee&& launch_and_see) {
   const auto traced_stages = [&]<class Instances>(Instances) {
     using Shadows = typename Instances::Shadows;
     const auto write_aovs = [&] {
@@ -74,9 +73,9 @@ void run_pipeline(const FrameView& frame, const PipelinePlan& plan, Launch&& lau
     at.samples = plan.samples;
     for (at.sample = 0; at.sample < plan.samples; ++at.sample) {
       // Ray generation, intersection, and reduction hit by hit.
-      const uint64_t hits = launch_and_count(ObjectIntersection<Instances>{at});
-      if (hits == 0 || plan.light_count == 0) launch(Ambient{at});
-      for (uint32_t light = 0; light < plan.light_count && hits > 0; ++light) launch(Lighting<Shadows>{at, light});
+      const bool hits = launch_and_see(ObjectIntersection<Instances>{at});
+      if (!hits || plan.light_count == 0) launch(Ambient{at});
+      for (uint32_t light = 0; light < plan.light_count && hits; ++light) launch(Lighting<Shadows>{at, light});
     }
     if (plan.samples > 1) launch(Average{at});
     if (!plan.centres_apart()) write_aovs();

@@ -57,6 +57,14 @@ class Event {
   Event& operator=(const Event&) = delete;
   ~Event() { cudaEventDestroy(event_); }
   void record(cudaStream_t stream) { cudaEventRecord(event_, stream); }
+  /// What came before it is done, or failed.
+  cudaError_t wait() const { return cudaEventSynchronize(event_); }
+  /// The same without waiting: cudaErrorNotReady until then, which is no error for later calls to find.
+  cudaError_t query() const {
+    const cudaError_t status = cudaEventQuery(event_);
+    if (status == cudaErrorNotReady) cudaGetLastError();
+    return status;
+  }
   double seconds_since(const Event& start) const {
     float milliseconds = 0;
     cudaEventElapsedTime(&milliseconds, start.event_, event_);
@@ -65,6 +73,30 @@ class Event {
 
  private:
   cudaEvent_t event_ = nullptr;
+};
+
+/// A word of host memory that kernels raise and the host sees at once, while they still run.
+class HostFlag {
+ public:
+  HostFlag() = default;
+  HostFlag(const HostFlag&) = delete;
+  HostFlag& operator=(const HostFlag&) = delete;
+  ~HostFlag() {
+    if (word_) cudaFreeHost(word_);
+  }
+  cudaError_t create() {
+    const cudaError_t status = cudaHostAlloc(&word_, sizeof *word_, cudaHostAllocMapped);
+    return status == cudaSuccess ? cudaHostGetDevicePointer(&on_device_, word_, 0) : status;
+  }
+  /// While no kernel runs that may raise it.
+  void lower() { *static_cast<volatile uint32_t*>(word_) = 0; }
+  bool is_raised() const { return *static_cast<const volatile uint32_t*>(word_) != 0; }
+  /// For kernels: anything but 0 raises it.
+  uint32_t* on_device() const { return on_device_; }
+
+ private:
+  uint32_t* word_ = nullptr;
+  uint32_t* on_device_ = nullptr;
 };
 
 /// Copies a section to its piece, if it has one.

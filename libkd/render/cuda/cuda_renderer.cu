@@ -98,6 +98,7 @@ class CudaRenderer final : public Renderer {
   Stream stream_;
   DeviceScene device_scene_;
   StripBuffers buffers_;
+  HostFlag hit_seen_;
   Holding holding_;
 };
 
@@ -116,10 +117,10 @@ Result<void> CudaRenderer::upload_in(TriangleLayout layout) {
 void CudaRenderer::load_kernels() const {
   PipelinePlan plan = pipeline_plan(scene_, settings_, buffers_.targets());
   plan.samples = min_of(plan.samples, 2u);
-  const auto load_kernel = [](const auto& stage) -> uint64_t {
+  const auto load_kernel = [](const auto& stage) {
     cudaFuncAttributes attributes;
     cudaFuncGetAttributes(&attributes, stage_kernel<std::decay_t<decltype(stage)>>);
-    return 1;
+    return true;
   };
   FrameView view = strip_view(scene_, settings_, {0, scene_.window.height});
   view.scene.layout = holding_.layout;
@@ -131,6 +132,7 @@ Result<void> CudaRenderer::open() {
   Timer timer;
   KD_CUDA_TRY(cudaSetDevice(index_), "choosing the device");
   KD_CUDA_TRY(stream_.create(), "starting");
+  KD_CUDA_TRY(hit_seen_.create(), "starting");
   if (auto uploaded = upload_scene(); !uploaded) return uploaded;
   load_kernels();
   holding_.upload_seconds = timer.seconds();
@@ -153,27 +155,41 @@ Result<RenderStats> CudaRenderer::run_stages(const FrameView& view, const Progre
   unsigned long long* const device_totals = buffers_.totals();
   std::deque<Launch> launches;  // whose elements stay where they are
   cudaError_t status = cudaMemsetAsync(device_totals, 0, kCounters * sizeof(*device_totals), stream_);
+  hit_seen_.lower();
   bool cancelled = false;
-  const auto launch = [&](const auto& stage) {
+  const auto launch = [&](const auto& stage, uint32_t* raised = nullptr) {
     if (cancelled) return;
     using Stage = std::decay_t<decltype(stage)>;
     Launch& record = launches.emplace_back(Stage::kName);
     record.start.record(stream_);
-    const cudaError_t launched = launch_stage(stage, device_totals + kCounter<Stage>, stream_);
+    const cudaError_t launched = launch_stage(stage, {device_totals + kCounter<Stage>, raised}, stream_);
     if (status == cudaSuccess) status = launched;
     record.end.record(stream_);
   };
-  const auto launch_and_count = [&](const auto& stage) -> uint64_t {
-    launch(stage);
-    unsigned long long count = 0;
-    const cudaError_t copied = download(&count, device_totals + kCounter<std::decay_t<decltype(stage)>>, 1, stream_);
-    const cudaError_t waited = copied == cudaSuccess ? cudaStreamSynchronize(stream_) : copied;
-    if (status == cudaSuccess) status = waited;
+  // The host goes on as soon as it is told of a hit, so that the next stage is there when this one ends; but never by
+  // more than a sample, so that progress means something and an interruption is heard. A flag tells of most hits, the
+  // count of all.
+  const Launch* last_seen = nullptr;
+  bool seen = false;
+  const auto launch_and_see = [&](const auto& stage) {
+    const auto note = [&](cudaError_t result) {
+      if (status == cudaSuccess) status = result;
+    };
+    if (last_seen) note(last_seen->end.wait());
+    launch(stage, hit_seen_.on_device());
+    last_seen = &launches.back();
+    while (!seen && last_seen->end.query() == cudaErrorNotReady) seen = hit_seen_.is_raised();
+    if (!seen) {
+      unsigned long long count = 0;
+      note(download(&count, device_totals + kCounter<std::decay_t<decltype(stage)>>, 1, stream_));
+      note(cudaStreamSynchronize(stream_));
+      seen = count > 0;
+    }
     const double share = static_cast<double>(launches.size()) / static_cast<double>(plan.launches());
     cancelled = cancelled || !keep_going(progress, min_of(share, 1.0));
-    return count;
+    return seen;
   };
-  run_pipeline(view, plan, launch, launch_and_count);
+  run_pipeline(view, plan, launch, launch_and_see);
   unsigned long long totals[kCounters] = {};
   if (status == cudaSuccess) status = download(totals, device_totals, kCounters, stream_);
   if (status == cudaSuccess) status = cudaStreamSynchronize(stream_);

@@ -22,21 +22,35 @@ constexpr unsigned kStageBlocks<ObjectIntersection<Instances>> = kTraceBlocks;
 template <class Instances>
 constexpr unsigned kStageBlocks<Lighting<Instances>> = kTraceBlocks;
 
+/// Where a stage that counts something adds it up.
+struct Tally {
+  unsigned long long* total = nullptr;  // on the device
+  uint32_t* raised = nullptr;           // a HostFlag's, raised by some that add to it; null: nobody waits
+};
+
+/// Blocks of which one raises a flag: that is a write to the host, and tens of thousands would take their time. So
+/// would asking the total whether it was 0, once for all: as warps wait for the answer, the frame takes 1.5 % longer.
+constexpr unsigned kRaisingBlock = 16;
+
 template <class Stage>
-__global__ void __launch_bounds__(kBlock, kStageBlocks<Stage>) stage_kernel(Stage stage, unsigned long long* total) {
+__global__ void __launch_bounds__(kBlock, kStageBlocks<Stage>) stage_kernel(Stage stage, Tally tally) {
   const uint32_t pixel = tiled_pixel(blockIdx.x * blockDim.x + threadIdx.x, stage.frame.width, stage.frame.height);
   const bool counted = pixel != kNone && stage(pixel) != 0;
   if constexpr (kCounter<Stage> != kCounters) {
     const unsigned lanes = __ballot_sync(~0u, counted);
-    if (threadIdx.x % 32 == 0 && lanes != 0) atomicAdd(total, static_cast<unsigned long long>(__popc(lanes)));
+    if (threadIdx.x % 32 == 0 && lanes != 0) {
+      atomicAdd(tally.total, static_cast<unsigned long long>(__popc(lanes)));
+      if (tally.raised != nullptr && blockIdx.x % kRaisingBlock == 0)
+        *static_cast<volatile uint32_t*>(tally.raised) = 1;
+    }
   }
 }
 
-/// Runs stage(pixel) for every pixel of its strip. `total` is added to if the stage counts something.
+/// Runs stage(pixel) for every pixel of its strip.
 template <class Stage>
-cudaError_t launch_stage(const Stage& stage, unsigned long long* total, cudaStream_t stream) {
+cudaError_t launch_stage(const Stage& stage, const Tally& tally, cudaStream_t stream) {
   const size_t tiles = size_t{(stage.frame.width + 7) / 8} * ((stage.frame.height + 3) / 4);
-  stage_kernel<<<blocks_for(tiles * 32), kBlock, 0, stream>>>(stage, total);
+  stage_kernel<<<blocks_for(tiles * 32), kBlock, 0, stream>>>(stage, tally);
   return cudaGetLastError();
 }
 
