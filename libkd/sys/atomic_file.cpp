@@ -73,7 +73,8 @@ Result<void> write_file(const std::string& path, std::span<const std::byte> byte
   if (!file) return file.error();
   std::FILE* stream = std::fopen(file->temporary_path().c_str(), "wb");
   if (!stream) return output_error(path, "write");
-  const bool written = std::fwrite(bytes.data(), 1, bytes.size(), stream) == bytes.size();
+  // An empty span may have no address, which fwrite must not be given.
+  const bool written = bytes.empty() || std::fwrite(bytes.data(), 1, bytes.size(), stream) == bytes.size();
   if (std::fclose(stream) != 0 || !written) return output_error(path, "write");
   return file->commit();
 }
