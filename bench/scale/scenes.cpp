@@ -9,9 +9,9 @@
 
 #include <fmt/format.h>
 
-#include "forest/undergrowth.h"
 #include "kdbuild/build_source.h"
-#include "sys/atomic_file.h"
+#include "scenery/scenery.h"
+#include "scenery/undergrowth.h"
 
 namespace kd::bench::scale {
 
@@ -49,14 +49,13 @@ scene::Part stone(uint32_t object, Vec3d at, double scale) {
 }  // namespace
 
 Result<Quarry> Quarry::open(const std::string& folder) {
-  const auto path = [&](const std::string& name) { return folder + "/" + name; };
-  if (auto written = write_file(path(std::string(forest::kLibraryName)), forest::library_text()); !written)
-    return written.error();
-  for (uint32_t i = 0; i < kStones; ++i) {
-    const std::string mesh = path(fmt::format("stone{}.obj", i)), object = path(fmt::format("stone{}.nkd", i));
-    if (auto written = write_file(mesh, forest::make_rock(kCells, 3 * i).text("stone")); !written)
-      return written.error();
-    if (auto built = tools::build_object(mesh, object, {}); !built) return built.error();
+  std::vector<scenery::NamedMesh> stones;
+  for (uint32_t i = 0; i < kStones; ++i)
+    stones.push_back({fmt::format("stone{}", i), scenery::make_rock(kCells, 3 * i)});
+  if (auto written = scenery::write_meshes(folder, "stones", stones); !written) return written.error();
+  for (const scenery::NamedMesh& stone : stones) {
+    const std::string path = folder + "/" + stone.name;
+    if (auto built = tools::build_object(path + ".obj", path + ".nkd", {}); !built) return built.error();
   }
   return Quarry(folder);
 }

@@ -1,15 +1,16 @@
-#include "forest/plots.h"
+#include "scenery/plots.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 
-#include "forest/directions.h"
-#include "forest/tree.h"
-#include "forest/undergrowth.h"
+#include "scenery/directions.h"
+#include "scenery/scenery.h"
+#include "scenery/tree.h"
+#include "scenery/undergrowth.h"
 
-namespace kd::bench::forest {
+namespace kd::bench::scenery {
 
 namespace {
 
@@ -194,6 +195,4 @@ Plots plant_plots(uint64_t seed) {
   return plots;
 }
 
-double centimetres(double length) { return std::round(100 * length) / 100; }
-
-}  // namespace kd::bench::forest
+}  // namespace kd::bench::scenery

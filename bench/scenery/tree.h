@@ -1,9 +1,9 @@
 // Trees: trunk, branches, twigs and leaves, grown from a species and a seed.
 #pragma once
 
-#include "forest/obj_mesh.h"
+#include "scenery/obj_mesh.h"
 
-namespace kd::bench::forest {
+namespace kd::bench::scenery {
 
 /// Of trees whose branches fork. Lengths in metres, shares in [0, 1].
 struct Species {
@@ -30,4 +30,4 @@ ObjMesh grow_shrub(const Species& species, int stems, uint64_t seed);
 /// A straight trunk with whorls of hanging branches under sprays of needles.
 ObjMesh grow_spruce(double height, uint64_t seed);
 
-}  // namespace kd::bench::forest
+}  // namespace kd::bench::scenery

@@ -1,10 +1,11 @@
-#include "forest/obj_mesh.h"
+#include "scenery/obj_mesh.h"
 
+#include <algorithm>
 #include <iterator>
 
 #include <fmt/format.h>
 
-namespace kd::bench::forest {
+namespace kd::bench::scenery {
 
 namespace {
 
@@ -36,16 +37,6 @@ constexpr StuffRow kStuffRows[] = {
 static_assert(std::size(kStuffRows) == kStuffs);
 
 }  // namespace
-
-std::string library_text() {
-  std::string text = "# written by kdbench forest\n";
-  for (const StuffRow& row : kStuffRows) {
-    const auto [r, g, b] = row.colour;
-    text += fmt::format("\nnewmtl {0}\nKa {1} {2} {3}\nKd {1} {2} {3}\nKs {4} {4} {4}\nNs {5}\n", row.name, r, g, b,
-                        row.specular, row.shininess);
-  }
-  return text;
-}
 
 uint32_t ObjMesh::vertex(Vec3d p) {
   vertices_.push_back(p);
@@ -80,10 +71,10 @@ uint64_t ObjMesh::triangle_count() const {
   return count;
 }
 
-std::string ObjMesh::text(std::string_view name) const {
+std::string ObjMesh::text(std::string_view name, std::string_view library) const {
   fmt::memory_buffer text;
   auto out = std::back_inserter(text);
-  fmt::format_to(out, "# written by kdbench forest\nmtllib {}\no {}\n", kLibraryName, name);
+  fmt::format_to(out, "# written by kdbench\nmtllib {}\no {}\n", library, name);
   for (Vec3d p : vertices_) fmt::format_to(out, "v {:.4f} {:.4f} {:.4f}\n", p.x, p.y, p.z);
   for (Vec3d n : normals_) fmt::format_to(out, "vn {:.3f} {:.3f} {:.3f}\n", n.x, n.y, n.z);
   for (size_t stuff = 0; stuff < kStuffs; ++stuff) {
@@ -100,4 +91,17 @@ std::string ObjMesh::text(std::string_view name) const {
   return fmt::to_string(text);
 }
 
-}  // namespace kd::bench::forest
+std::string library_text(std::span<const NamedMesh> meshes) {
+  std::string text = "# written by kdbench\n";
+  for (size_t stuff = 0; stuff < kStuffs; ++stuff) {
+    const auto uses = [&](const NamedMesh& m) { return m.mesh.has(static_cast<Stuff>(stuff)); };
+    if (std::none_of(meshes.begin(), meshes.end(), uses)) continue;
+    const StuffRow& row = kStuffRows[stuff];
+    const auto [r, g, b] = row.colour;
+    text += fmt::format("\nnewmtl {0}\nKa {1} {2} {3}\nKd {1} {2} {3}\nKs {4} {4} {4}\nNs {5}\n", row.name, r, g, b,
+                        row.specular, row.shininess);
+  }
+  return text;
+}
+
+}  // namespace kd::bench::scenery

@@ -1,15 +1,16 @@
-// A mesh as it grows, in metres with y up, and the OBJ file that it becomes.
+// A mesh in the making, in metres with y up, and the OBJ file that it becomes.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "core/vec.h"
 
-namespace kd::bench::forest {
+namespace kd::bench::scenery {
 
 /// What things are made of. Leaves come in three shades, side by side.
 enum class Stuff : uint8_t {
@@ -33,10 +34,6 @@ enum class Stuff : uint8_t {
 constexpr int kShades = 3;
 constexpr size_t kStuffs = static_cast<size_t>(Stuff::path) + 1;
 
-/// The material library that every mesh names, and its file's name.
-constexpr std::string_view kLibraryName = "forest.mtl";
-std::string library_text();
-
 struct Corner {
   uint32_t vertex = 0;  // both from 1, as in the file
   uint32_t normal = 0;  // 0: none
@@ -54,8 +51,9 @@ class ObjMesh {
   void leaf(Stuff stuff, Vec3d base, Vec3d along, Vec3d across, Vec3d n);
 
   uint64_t triangle_count() const;
-  /// Coordinates have four decimals.
-  std::string text(std::string_view name) const;
+  bool has(Stuff stuff) const { return !triangles_[static_cast<size_t>(stuff)].empty(); }
+  /// Coordinates have four decimals. `library`: the name of the file of its materials.
+  std::string text(std::string_view name, std::string_view library) const;
 
  private:
   std::vector<Vec3d> vertices_;
@@ -63,4 +61,12 @@ class ObjMesh {
   std::array<std::vector<std::array<Corner, 3>>, kStuffs> triangles_;
 };
 
-}  // namespace kd::bench::forest
+struct NamedMesh {
+  std::string name;
+  ObjMesh mesh;
+};
+
+/// The material library of what meshes are made of.
+std::string library_text(std::span<const NamedMesh> meshes);
+
+}  // namespace kd::bench::scenery

@@ -1,10 +1,10 @@
-#include "forest/terrain.h"
+#include "scenery/terrain.h"
 
 #include <cmath>
 
-#include "forest/directions.h"
+#include "scenery/directions.h"
 
-namespace kd::bench::forest {
+namespace kd::bench::scenery {
 
 double Terrain::path(double z) const {
   return 55 * noise({z / 130, 0.5, 0}, seed_ + 1) * smooth_step(0, -90, z) + 7 * noise({z / 33, 0.5, 0}, seed_ + 2);
@@ -66,4 +66,4 @@ ObjMesh Terrain::path_mesh(double near, double far) const {
   return mesh;
 }
 
-}  // namespace kd::bench::forest
+}  // namespace kd::bench::scenery

@@ -1,11 +1,11 @@
-#include "forest/tree.h"
+#include "scenery/tree.h"
 
 #include <cmath>
 #include <span>
 
-#include "forest/directions.h"
+#include "scenery/directions.h"
 
-namespace kd::bench::forest {
+namespace kd::bench::scenery {
 
 namespace {
 
@@ -205,4 +205,4 @@ ObjMesh grow_spruce(double height, uint64_t seed) {
   return mesh;
 }
 
-}  // namespace kd::bench::forest
+}  // namespace kd::bench::scenery

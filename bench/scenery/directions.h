@@ -8,7 +8,7 @@
 #include "core/vec.h"
 #include "stress/random.h"
 
-namespace kd::bench::forest {
+namespace kd::bench::scenery {
 
 using stress::Random;
 
@@ -57,4 +57,4 @@ inline double noise(Vec3d p, uint64_t layer) {
   return sum;
 }
 
-}  // namespace kd::bench::forest
+}  // namespace kd::bench::scenery

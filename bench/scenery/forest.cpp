@@ -1,4 +1,4 @@
-#include "forest/forest.h"
+#include "scenery/forest.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,10 +6,11 @@
 
 #include <fmt/format.h>
 
-#include "forest/directions.h"
-#include "forest/terrain.h"
+#include "scenery/directions.h"
+#include "scenery/plots.h"
+#include "scenery/terrain.h"
 
-namespace kd::bench::forest {
+namespace kd::bench::scenery {
 
 namespace {
 
@@ -125,8 +126,8 @@ void set_view(scene::Scene& scene, const Terrain& terrain) {
 
 }  // namespace
 
-Forest plant_forest(uint64_t triangles, uint64_t seed, const std::string& folder) {
-  Forest forest;
+Scenery plant_forest(uint64_t triangles, uint64_t seed, const std::string& folder) {
+  Scenery forest;
   forest.meshes = grow_meshes(seed);
   const Terrain terrain(seed);
   Plots plots = plant_plots(seed);
@@ -161,4 +162,4 @@ Forest plant_forest(uint64_t triangles, uint64_t seed, const std::string& folder
   return forest;
 }
 
-}  // namespace kd::bench::forest
+}  // namespace kd::bench::scenery

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "forest/obj_mesh.h"
 #include "scene/scene.h"
+#include "scenery/obj_mesh.h"
 
-namespace kd::bench::forest {
+namespace kd::bench::scenery {
 
 /// Objects, in the order in which they are made. The last two are the terrain's.
 enum Kind : uint32_t {
@@ -27,11 +27,6 @@ enum Kind : uint32_t {
   path,
 };
 
-struct NamedMesh {
-  std::string name;
-  ObjMesh mesh;
-};
-
 /// Those of all kinds but the terrain's.
 std::vector<NamedMesh> grow_meshes(uint64_t seed);
 
@@ -47,7 +42,4 @@ struct Plots {
 };
 Plots plant_plots(uint64_t seed);
 
-/// What the file says of a length: rounded, so that it stays short.
-double centimetres(double length);
-
-}  // namespace kd::bench::forest
+}  // namespace kd::bench::scenery

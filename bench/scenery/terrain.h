@@ -2,9 +2,9 @@
 // origin, on a knoll.
 #pragma once
 
-#include "forest/obj_mesh.h"
+#include "scenery/obj_mesh.h"
 
-namespace kd::bench::forest {
+namespace kd::bench::scenery {
 
 class Terrain {
  public:
@@ -25,4 +25,4 @@ class Terrain {
   uint64_t seed_;
 };
 
-}  // namespace kd::bench::forest
+}  // namespace kd::bench::scenery

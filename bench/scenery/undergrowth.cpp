@@ -1,10 +1,10 @@
-#include "forest/undergrowth.h"
+#include "scenery/undergrowth.h"
 
 #include <cmath>
 
-#include "forest/directions.h"
+#include "scenery/directions.h"
 
-namespace kd::bench::forest {
+namespace kd::bench::scenery {
 
 namespace {
 
@@ -99,4 +99,4 @@ ObjMesh make_rock(int cells, uint64_t seed) {
   return mesh;
 }
 
-}  // namespace kd::bench::forest
+}  // namespace kd::bench::scenery
