@@ -1,6 +1,8 @@
 // Binned building after Wald, "On fast construction of SAH-based bounding volume hierarchies", 2007: boxes are sorted
-// into bins by their centres, and the cuts between bins are compared. The nodes do not depend on the number of threads:
-// where a subtree's nodes lie follows from how many leaves are before it.
+// into bins by their centres, and the cuts between bins are compared. By their sizes, too: by centres alone the ground
+// under a city would end among the houses at its middle, and all nodes on the way there would be as large as the
+// ground. The nodes do not depend on the number of threads: where a subtree's nodes lie follows from how many leaves
+// are before it.
 #include "scene/hierarchy.h"
 
 #include <algorithm>
@@ -39,18 +41,50 @@ struct Reach {
     const auto i = static_cast<size_t>(axis);
     return way[i + 3] * 0.5 - way[i] * 0.5;
   }
-  Vec3d centre() const { return {centre(0), centre(1), centre(2)}; }
 };
+
+constexpr int kSize = 3;  // what boxes are told apart by: their centres along three axes, and their sizes
+constexpr int kKeys = 4;
 
 struct Entry {
   Reach reach;
-  uint32_t instance;
+  uint32_t instance = 0;
+  float size = 0;  // logarithm of the box's surface
+
+  Entry() = default;
+  Entry(const Box3d& box, uint32_t instance_) : reach(box), instance(instance_) {
+    const double area = reach.half_area();  // 0 of a point, and no number of what double cannot hold
+    constexpr double kLeast = std::numeric_limits<double>::min(), kMost = std::numeric_limits<double>::max();
+    size = static_cast<float>(std::log2(area <= kMost ? max_of(area, kLeast) : kMost));
+  }
+  double key(int which) const { return which == kSize ? static_cast<double>(size) : reach.centre(which); }
+};
+
+/// The least and the largest of each key.
+struct KeyRange {
+  std::array<double, kKeys> lo, hi;
+
+  KeyRange() {
+    lo.fill(std::numeric_limits<double>::max());
+    hi.fill(std::numeric_limits<double>::lowest());
+  }
+  /// How many of the keys tell entries apart: sizes that differ by less than a factor of two do not.
+  int count() const { return hi[kSize] - lo[kSize] < 1 ? kSize : kKeys; }
+
+  void extend(const Entry& entry) {
+    for (int which = 0; which < kKeys; ++which) {
+      const auto i = static_cast<size_t>(which);
+      const double key = entry.key(which);
+      lo[i] = min_of(lo[i], key);
+      hi[i] = max_of(hi[i], key);
+    }
+  }
 };
 
 /// Leaves [begin, end), under a node that is to be made.
 struct Task {
   size_t begin, end;
-  Box3d centres;   // of the leaves' boxes
+  KeyRange keys;   // of the leaves
   uint32_t slot;   // the node
   uint32_t below;  // the first of the 2 (end - begin) - 2 nodes below it
   int depth;
@@ -70,30 +104,31 @@ struct Bin {
   }
 };
 
-/// Which bin a centre falls into, along each axis. An axis along which centres do not differ has one.
+/// Which bin an entry falls into by each of its keys. A key that does not differ has one.
 class Binning {
  public:
-  Binning(const Box3d& centres, int bins) : last_(bins - 1) {
-    for (int axis = 0; axis < 3; ++axis) {
-      const double range = centres.hi[axis] - centres.lo[axis], scale = bins / range;
+  Binning(const KeyRange& keys, int bins) : last_(bins - 1) {
+    for (size_t i = 0; i < kKeys; ++i) {
+      const double range = keys.hi[i] - keys.lo[i], scale = bins / range;
       if (!std::isfinite(range) || !std::isfinite(scale)) continue;
-      lo_.set(axis, centres.lo[axis]);
-      scale_.set(axis, scale);
+      lo_[i] = keys.lo[i];
+      scale_[i] = scale;
     }
   }
-  int bin(const Entry& entry, int axis) const {
-    return std::min(static_cast<int>((entry.reach.centre(axis) - lo_[axis]) * scale_[axis]), last_);
+  int bin(const Entry& entry, int which) const {
+    const auto i = static_cast<size_t>(which);
+    return std::min(static_cast<int>((entry.key(which) - lo_[i]) * scale_[i]), last_);
   }
 
  private:
-  Vec3d lo_, scale_;
+  std::array<double, kKeys> lo_{}, scale_{};
   int last_;
 };
 
 /// A cut between leaves; in front of leaf `position` for sorted ones, behind bin `position` for binned ones.
 struct Cut {
   double cost = std::numeric_limits<double>::infinity();
-  int axis = 0;
+  int key = 0;
   size_t position = 0;
 
   bool exists() const { return cost < std::numeric_limits<double>::infinity(); }
@@ -102,19 +137,21 @@ struct Cut {
   }
 };
 
-/// Rows of bins, one an axis.
+/// Rows of bins, one a key.
 struct Bins {
-  explicit Bins(int used) : count(static_cast<size_t>(used)) {
+  explicit Bins(const Task& task)
+      : keys(static_cast<size_t>(task.keys.count())), count(static_cast<size_t>(task.bins())) {
     for (auto& row : rows) std::fill_n(row.begin(), count, Bin{});
   }
-  size_t count;
-  std::array<std::array<Bin, kMaxBins>, 3> rows;
+  size_t keys;
+  size_t count;  // of each
+  std::array<std::array<Bin, kMaxBins>, kKeys> rows;
 };
 
 Cut best_cut(const Bins& bins) {
   Cut best;
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto& row = bins.rows[static_cast<size_t>(axis)];
+  for (size_t key = 0; key < bins.keys; ++key) {
+    const auto& row = bins.rows[key];
     std::array<double, kMaxBins> right_cost;  // of the bins from i on
     Bin right;
     for (size_t i = bins.count; i-- > 1;) {
@@ -127,7 +164,8 @@ Cut best_cut(const Bins& bins) {
       if (row[i].count == 0) continue;  // the cut before it is the same
       left.add(row[i]);
       if (left.count == all) break;
-      best.improve({left.reach.half_area() * static_cast<double>(left.count) + right_cost[i + 1], axis, i});
+      best.improve(
+          {left.reach.half_area() * static_cast<double>(left.count) + right_cost[i + 1], static_cast<int>(key), i});
     }
   }
   return best;
@@ -138,24 +176,24 @@ class HierarchyBuilder {
   HierarchyBuilder(std::span<const Instance> instances, std::span<HierarchyNode> nodes)
       : instances_(instances), entries_(instances.size()), nodes_(nodes) {
     parallel_ranges(instances.size(), kBinGrain, [&](size_t begin, size_t end) {
-      for (size_t i = begin; i < end; ++i) entries_[i] = {Reach(instances[i].box_scene), static_cast<uint32_t>(i)};
+      for (size_t i = begin; i < end; ++i) entries_[i] = {instances[i].box_scene, static_cast<uint32_t>(i)};
     });
   }
 
   void build_all() {
     Task root{0, entries_.size(), {}, 0, 1, 0};
-    for (size_t i = 0; i < entries_.size(); ++i) root.centres.extend(entries_[i].reach.centre());
+    for (size_t i = 0; i < entries_.size(); ++i) root.keys.extend(entries_[i]);
     build(root);
   }
 
  private:
   void build(const Task& task);
-  size_t divide(const Task& task, Box3d& left, Box3d& right);
-  size_t divide_sorted(const Task& task, Box3d& left, Box3d& right);
-  size_t halve(const Task& task, Box3d& left, Box3d& right);
+  size_t divide(const Task& task, KeyRange& left, KeyRange& right);
+  size_t divide_sorted(const Task& task, KeyRange& left, KeyRange& right);
+  size_t halve(const Task& task, KeyRange& left, KeyRange& right);
   void fill(const Task& task, const Binning& binning, Bins& bins) const;
   template <class IsLeft>
-  size_t partition(const Task& task, Box3d& left, Box3d& right, const IsLeft& is_left);
+  size_t partition(const Task& task, KeyRange& left, KeyRange& right, const IsLeft& is_left);
 
   std::span<const Instance> instances_;
   HugeArray<Entry> entries_;
@@ -170,17 +208,17 @@ void HierarchyBuilder::build(const Task& task) {
     node = {box.lo, instance, box.hi, 1};
     return;
   }
-  Box3d left_centres, right_centres;
+  KeyRange left_keys, right_keys;
   size_t middle = task.begin;
   if (task.depth < kSahDepth) {
-    middle = task.count() <= kMaxExhaustive ? divide_sorted(task, left_centres, right_centres)
-                                            : divide(task, left_centres, right_centres);
+    middle = task.count() <= kMaxExhaustive ? divide_sorted(task, left_keys, right_keys)
+                                            : divide(task, left_keys, right_keys);
   }
-  if (middle == task.begin) middle = halve(task, left_centres, right_centres);
+  if (middle == task.begin) middle = halve(task, left_keys, right_keys);
   const uint32_t child = task.below;
-  const Task left{task.begin, middle, left_centres, child, child + 2, task.depth + 1};
+  const Task left{task.begin, middle, left_keys, child, child + 2, task.depth + 1};
   const auto left_below = static_cast<uint32_t>(hierarchy_size(left.count()) - 1);
-  const Task right{middle, task.end, right_centres, child + 1, child + 2 + left_below, task.depth + 1};
+  const Task right{middle, task.end, right_keys, child + 1, child + 2 + left_below, task.depth + 1};
   if (task.count() >= kParallelHalves) {
     parallel_tasks([&] { build(left); }, [&] { build(right); });
   } else {
@@ -194,63 +232,63 @@ void HierarchyBuilder::build(const Task& task) {
 
 /// Reorders the task's leaves so that those of the left half come first, and returns where the right ones begin. The
 /// beginning, if no cut tells the leaves apart.
-size_t HierarchyBuilder::divide(const Task& task, Box3d& left, Box3d& right) {
-  const Binning binning(task.centres, task.bins());
-  Bins bins(task.bins());
+size_t HierarchyBuilder::divide(const Task& task, KeyRange& left, KeyRange& right) {
+  const Binning binning(task.keys, task.bins());
+  Bins bins(task);
   fill(task, binning, bins);
   const Cut cut = best_cut(bins);
   if (!cut.exists()) return task.begin;
   return partition(task, left, right,
-                   [&](const Entry& e) { return binning.bin(e, cut.axis) <= static_cast<int>(cut.position); });
+                   [&](const Entry& e) { return binning.bin(e, cut.key) <= static_cast<int>(cut.position); });
 }
 
 void HierarchyBuilder::fill(const Task& task, const Binning& binning, Bins& bins) const {
   const auto fill_range = [&](size_t begin, size_t end, Bins& out) {
     for (size_t i = begin; i < end; ++i) {
-      for (int axis = 0; axis < 3; ++axis) {
-        Bin& bin = out.rows[static_cast<size_t>(axis)][static_cast<size_t>(binning.bin(entries_[i], axis))];
+      for (size_t key = 0; key < out.keys; ++key) {
+        Bin& bin = out.rows[key][static_cast<size_t>(binning.bin(entries_[i], static_cast<int>(key)))];
         bin.reach.extend(entries_[i].reach);
         ++bin.count;
       }
     }
   };
   if (task.count() < kParallelBinning) return fill_range(task.begin, task.end, bins);
-  PerThread<Bins> parts{Bins(task.bins())};
+  PerThread<Bins> parts{Bins(task)};
   parallel_ranges(task.count(), kBinGrain,
                   [&](size_t begin, size_t end) { fill_range(task.begin + begin, task.begin + end, parts.local()); });
   for (const Bins& part : parts) {
-    for (size_t axis = 0; axis < 3; ++axis) {
-      for (size_t i = 0; i < bins.count; ++i) bins.rows[axis][i].add(part.rows[axis][i]);
+    for (size_t key = 0; key < bins.keys; ++key) {
+      for (size_t i = 0; i < bins.count; ++i) bins.rows[key][i].add(part.rows[key][i]);
     }
   }
 }
 
 template <class IsLeft>
-size_t HierarchyBuilder::partition(const Task& task, Box3d& left, Box3d& right, const IsLeft& is_left) {
+size_t HierarchyBuilder::partition(const Task& task, KeyRange& left, KeyRange& right, const IsLeft& is_left) {
   size_t i = task.begin, j = task.end;
   while (i < j) {
     if (is_left(entries_[i])) {
-      left.extend(entries_[i++].reach.centre());
+      left.extend(entries_[i++]);
     } else {
-      right.extend(entries_[i].reach.centre());
+      right.extend(entries_[i]);
       std::swap(entries_[i], entries_[--j]);
     }
   }
   return i;
 }
 
-/// `divide` for few leaves: every cut along every axis.
-size_t HierarchyBuilder::divide_sorted(const Task& task, Box3d& left, Box3d& right) {
+/// `divide` for few leaves: every cut by every key.
+size_t HierarchyBuilder::divide_sorted(const Task& task, KeyRange& left, KeyRange& right) {
   const size_t count = task.count();
-  std::array<std::array<uint8_t, kMaxExhaustive>, 3> orders;
+  std::array<std::array<uint8_t, kMaxExhaustive>, kKeys> orders;
   std::array<Entry, kMaxExhaustive> entries;
   std::copy_n(entries_.data() + task.begin, count, entries.begin());
   Cut best;
-  for (int axis = 0; axis < 3; ++axis) {
-    auto& order = orders[static_cast<size_t>(axis)];
+  for (int which = 0; which < task.keys.count(); ++which) {
+    auto& order = orders[static_cast<size_t>(which)];
     std::array<double, kMaxExhaustive> keys;
     for (size_t i = 0; i < count; ++i) {  // by insertion
-      const double key = entries[i].reach.centre(axis);
+      const double key = entries[i].key(which);
       size_t at = i;
       for (; at > 0 && key < keys[at - 1]; --at) {
         keys[at] = keys[at - 1];
@@ -268,21 +306,21 @@ size_t HierarchyBuilder::divide_sorted(const Task& task, Box3d& left, Box3d& rig
     reach = {};
     for (size_t i = 1; i < count; ++i) {
       reach.extend(entries[order[i - 1]].reach);
-      best.improve({reach.half_area() * static_cast<double>(i) + right_cost[i], axis, i});
+      best.improve({reach.half_area() * static_cast<double>(i) + right_cost[i], which, i});
     }
   }
   if (!best.exists()) return task.begin;
   for (size_t i = 0; i < count; ++i) {
-    const Entry& entry = entries[orders[static_cast<size_t>(best.axis)][i]];
+    const Entry& entry = entries[orders[static_cast<size_t>(best.key)][i]];
     entries_[task.begin + i] = entry;
-    (i < best.position ? left : right).extend(entry.reach.centre());
+    (i < best.position ? left : right).extend(entry);
   }
   return task.begin + best.position;
 }
 
-size_t HierarchyBuilder::halve(const Task& task, Box3d& left, Box3d& right) {
+size_t HierarchyBuilder::halve(const Task& task, KeyRange& left, KeyRange& right) {
   const size_t middle = task.begin + task.count() / 2;
-  for (size_t i = task.begin; i < task.end; ++i) (i < middle ? left : right).extend(entries_[i].reach.centre());
+  for (size_t i = task.begin; i < task.end; ++i) (i < middle ? left : right).extend(entries_[i]);
   return middle;
 }
 

@@ -130,6 +130,19 @@ TEST_CASE("hierarchy: a grid costs at most 2 % more than in halves") {
   CHECK(surface(build_hierarchy(grid)) < 1.02 * halves);
 }
 
+TEST_CASE("hierarchy: what is large among small things lies above them, and no node is large because of it") {
+  std::vector<Instance> instances = random_boxes(4096, 1);
+  const double without = surface(build_hierarchy(instances));
+  const Box3d ground{{-2000, 0, -2000}, {2000, 0, 2000}}, pavement{{0, 0, 0}, {100, 0.1, 100}};
+  instances.insert(instances.begin() + 1000, {boxes(1, [&](size_t) { return pavement; })[0]});
+  instances.push_back(boxes(1, [&](size_t) { return ground; })[0]);
+  const std::vector<HierarchyNode> nodes = build_hierarchy(instances);
+  CHECK(fault_of(nodes, instances) == "");
+  const Vec3d extent = vec_cast<double>(nodes[0].hi) - vec_cast<double>(nodes[0].lo);
+  const double root = extent.x * extent.y + extent.y * extent.z + extent.z * extent.x;
+  CHECK(surface(nodes) < without + 1.01 * root);
+}
+
 TEST_CASE("hierarchy: the same nodes for any number of threads") {
   const std::vector<Instance> instances = random_boxes(300000, 1);
   const std::vector<HierarchyNode> nodes = build_hierarchy(instances);
