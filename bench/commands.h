@@ -15,6 +15,7 @@ struct Command {
 };
 
 Command build_command(CLI::App& app);
+Command city_command(CLI::App& app);
 Command floor_command(CLI::App& app);
 Command forest_command(CLI::App& app);
 Command frame_command(CLI::App& app);

@@ -1,4 +1,4 @@
-// kdbench forest: a scene of a thousand million triangles in a few megabytes, with all that it is made of.
+// kdbench city and forest: a scene of a thousand million triangles in a few megabytes, with all that it is made of.
 #include <filesystem>
 #include <memory>
 
@@ -7,6 +7,7 @@
 #include "commands.h"
 #include "common/console.h"
 #include "scene/write_scene.h"
+#include "scenery/city.h"
 #include "scenery/forest.h"
 #include "table.h"
 
@@ -68,6 +69,11 @@ Command scenery_command(CLI::App& app, const std::string& name, const std::strin
 }
 
 }  // namespace
+
+Command city_command(CLI::App& app) {
+  return scenery_command(app, "city", "Make a scene of any size: a city, its meshes and where they stand",
+                         scenery::lay_out_city);
+}
 
 Command forest_command(CLI::App& app) {
   return scenery_command(app, "forest", "Make a scene of any size: a forest, its meshes and where they stand",

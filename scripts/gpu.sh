@@ -71,8 +71,17 @@ $bin/kdbench scale --device cuda --size 1920x1080 --json "$out/scale.json" >"$ou
 cat "$out/scale.md"
 
 echo "== a thousand million triangles of instances, 1920 x 1080"
-$bin/kdbench forest -o dist/forest
-$bin/kdbuild build dist/forest/meshes/*.obj -o dist/forest/compiled/ --quiet
-$bin/kdrender dist/forest/forest.json -o "$out/forest.exr" --preview "$out/forest.png" --device cuda --stats "$out/forest.json"
-$bin/kdbench frame dist/forest/forest.json --device cuda
+for scene in forest city; do
+  $bin/kdbench $scene -o dist/$scene
+  $bin/kdbuild build dist/$scene/meshes/*.obj -o dist/$scene/compiled/ --quiet
+  $bin/kdrender dist/$scene/$scene.json -o "$out/$scene.exr" --preview "$out/$scene.png" --device cuda --stats "$out/$scene.json"
+  $bin/kdbench frame dist/$scene/$scene.json --device cuda
+  $bin/kdrender dist/$scene/$scene.json -o "$out/$scene-cpu.exr" --device cpu --quiet
+  $bin/kdrender dist/$scene/$scene.json --device cuda --compare "$out/$scene-cpu.exr" | tail -1
+done
+# So large that rays can meet a thousand million triangles of it.
+$bin/kdbench city -o dist/metropolis --triangles 2800000000 | tail -1
+rm -r dist/metropolis/compiled && ln -s ../city/compiled dist/metropolis/compiled
+$bin/kdrender dist/metropolis/city.json -o "$out/metropolis.exr" --device cuda --stats "$out/metropolis.json"
+$bin/kdbench frame dist/metropolis/city.json --device cuda
 exit $stress

@@ -12,7 +12,7 @@
 
 namespace kd::bench::scenery {
 
-/// What things are made of. Leaves come in three shades, side by side.
+/// What things are made of. Leaves and glass come in three shades, side by side.
 enum class Stuff : uint8_t {
   bark,
   pale_bark,
@@ -30,9 +30,24 @@ enum class Stuff : uint8_t {
   moss,
   meadow,
   path,
+  plaster,
+  brick,
+  limestone,
+  concrete,
+  tiles,
+  gravel,
+  steel,
+  iron,
+  blind,
+  awning,
+  asphalt,
+  paving,
+  paint,
+  rubber,
+  glass,
 };
 constexpr int kShades = 3;
-constexpr size_t kStuffs = static_cast<size_t>(Stuff::path) + 1;
+constexpr size_t kStuffs = static_cast<size_t>(Stuff::glass) + kShades;
 
 struct Corner {
   uint32_t vertex = 0;  // both from 1, as in the file
