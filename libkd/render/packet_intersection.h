@@ -5,6 +5,7 @@
 #pragma once
 
 #include <bit>
+#include <utility>
 
 #include "core/packet_traversal.h"
 #include "render/stages/object_intersection.h"
@@ -19,6 +20,12 @@ struct HierarchyPacket {
     PacketFloats enter;
     PacketTruths inside;  // the rays that pass the box
     uint32_t node;
+
+    /// Whether most of the rays inside another box, which they enter at `other`, enter this one first.
+    KD_INLINE bool begins_sooner(PacketFloats other, PacketTruths other_inside) const {
+      const RaySet sooner = ((enter < other) & inside & other_inside).rays();
+      return 2 * std::popcount(sooner) > std::popcount(other_inside.rays());
+    }
   };
 
   const SceneView& scene;
@@ -34,13 +41,25 @@ struct HierarchyPacket {
       return PacketFloats(limits);
     };
     PacketFloats limit = take_limits(set);
-    HierarchyNode node = scene.hierarchy[0];
-    PacketTruths inside = test.pass(node, limit).passes() & PacketTruths::in(set);
+    uint32_t here = 0;
+    HierarchyNode node = scene.hierarchy[here];
+    const Passage<PacketFloats> to_all = test.pass(node, limit);
+    PacketFloats enter = to_all.enter;
+    PacketTruths inside = to_all.passes() & PacketTruths::in(set);
     if (inside.rays() == kNoRays) return;
     Postponed stack[kMaxHierarchyDepth];
     int open = 0;
     while (true) {
-      if (node.is_leaf) {
+      // An instance waits while what was postponed last begins sooner: a box that holds the ground begins before the
+      // houses do, and the ground itself behind them. (On a GPU lanes part over it: a fifth to a third slower there.)
+      if (node.is_leaf && open > 0 && stack[open - 1].begins_sooner(enter, inside)) {
+        Postponed& top = stack[open - 1];
+        std::swap(enter, top.enter);
+        std::swap(inside, top.inside);
+        std::swap(here, top.node);
+        inside = inside & !(enter > limit);
+        node = scene.hierarchy[here];
+      } else if (node.is_leaf) {
         const RaySet visiting = inside.rays();
         const RaySet done = visit(node.first, visiting);
         for_each_ray(done, [&](size_t i) { t_limit[i] = -std::numeric_limits<double>::infinity(); });
@@ -61,14 +80,18 @@ struct HierarchyPacket {
         if (through_a != kNoRays && through_b != kNoRays) {
           stack[open++] = a_first ? Postponed{to_b.enter, in_b, first + 1} : Postponed{to_a.enter, in_a, first};
         }
+        enter = a_first ? to_a.enter : to_b.enter;
         inside = a_first ? in_a : in_b;
+        here = a_first ? first : first + 1;
         node = a_first ? a : b;
       }
       while (inside.rays() == kNoRays) {
         if (open == 0) return;
         --open;
-        inside = stack[open].inside & !(stack[open].enter > limit);
-        node = scene.hierarchy[stack[open].node];
+        enter = stack[open].enter;
+        inside = stack[open].inside & !(enter > limit);
+        here = stack[open].node;
+        node = scene.hierarchy[here];
       }
     }
   }
