@@ -26,6 +26,8 @@ struct Options : RayOptions {
 
 constexpr uint32_t kMostLights = 64;
 constexpr uint32_t kInView = 100;  // instances, where their number is not what grows
+constexpr uint32_t kSorts = 100;   // objects that a picture's instances are of
+constexpr uint32_t kOfEach = 10;   // instances of each object, where the number of objects in view grows
 
 /// How far each sweep goes.
 struct Reach {
@@ -121,6 +123,11 @@ Result<void> sweep_library(Sweep& sweep, const Quarry& quarry, const Reach& reac
         add_wall(scene, kStones, Place::in_view, 0, kStones);
       });
   if (!done) return done;
+  done = sweep.series({"seen_objects", "Objects with ten instances each, all in view", "in view", {}}, counts, listed,
+                      [](scene::Scene& scene, uint64_t count) {
+                        add_wall(scene, kOfEach * count, Place::in_view, 0, static_cast<uint32_t>(count));
+                      });
+  if (!done) return done;
   return sweep.series({"unseen_objects",
                        "Objects that are placed; ten of them in view, the others where nobody sees them",
                        "placed",
@@ -132,12 +139,15 @@ Result<void> sweep_library(Sweep& sweep, const Quarry& quarry, const Reach& reac
 }
 
 Result<void> sweep_instances(Sweep& sweep, const Reach& reach) {
-  const auto stones = [](uint64_t) { return kStones; };
   auto done = sweep.series(
-      {"picture", "Instances of ten objects, all in view; they fill the picture however many they are", "in view", {}},
-      decades(1, reach.instances), stones,
-      [](scene::Scene& scene, uint64_t count) { add_wall(scene, count, Place::in_view, 0, kStones); });
+      {"picture",
+       "Instances of a hundred objects, all in view; they fill the picture however many they are",
+       "in view",
+       {}},
+      decades(1, reach.instances), [](uint64_t) { return kSorts; },
+      [](scene::Scene& scene, uint64_t count) { add_wall(scene, count, Place::in_view, 0, kSorts); });
   if (!done) return done;
+  const auto stones = [](uint64_t) { return kStones; };
   std::vector<uint64_t> counts{0};
   for (const uint64_t count : decades(10, reach.instances)) counts.push_back(count);
   return sweep.series(

@@ -12,7 +12,7 @@ PANELS = [
     ("picture", "instances in view", ["parse", "load", "hierarchy", "frame"]),
     ("unseen_instances", "instances out of view; 100 in view", ["parse", "load", "hierarchy", "frame"]),
 ]
-TABLES = ["library", "folder", "unseen_objects", "picture", "unseen_instances"]
+TABLES = ["library", "folder", "seen_objects", "unseen_objects", "picture", "unseen_instances"]
 LIGHTS = [("lights_lit", "lit", "#c2571a"), ("lights_black", "black", "#333333"), ("lights_behind", "behind", "#1f6f8b")]
 
 

@@ -40,6 +40,10 @@ TEST_SUITE("kdbench scale") {
       CHECK(row["rays"] == library[0]["rays"]);
     }
 
+    for (const auto& row : series_of(report, "seen_objects")) {
+      CHECK(row["objects_opened"] == row["count"]);
+      CHECK(row["instances"] == 10 * row["count"].get<int>());
+    }
     const auto& unseen_objects = series_of(report, "unseen_objects");
     for (const char* cost : {"objects_opened", "rays"}) CHECK(unseen_objects[0][cost] == unseen_objects[1][cost]);
     for (const char* bytes : {"objects", "scene"}) {
