@@ -17,9 +17,10 @@ struct Box3 {
     lo = {std::min(lo.x, p.x), std::min(lo.y, p.y), std::min(lo.z, p.z)};
     hi = {std::max(hi.x, p.x), std::max(hi.y, p.y), std::max(hi.z, p.z)};
   }
+  /// By an empty box not at all.
   constexpr void extend(const Box3& b) {
-    extend(b.lo);
-    extend(b.hi);
+    lo = {std::min(lo.x, b.lo.x), std::min(lo.y, b.lo.y), std::min(lo.z, b.lo.z)};
+    hi = {std::max(hi.x, b.hi.x), std::max(hi.y, b.hi.y), std::max(hi.z, b.hi.z)};
   }
   constexpr bool empty() const { return lo.x > hi.x || lo.y > hi.y || lo.z > hi.z; }
   constexpr Vec3<T> extent() const { return hi - lo; }

@@ -1,7 +1,11 @@
 // Culling: what the camera and the lights' rays can meet stays, and what is plainly beside them goes.
 #include "scene/culling.h"
 
+#include <algorithm>
+
 #include <doctest/doctest.h>
+
+#include "sys/parallel.h"
 
 using namespace kd;
 using namespace kd::scene;
@@ -70,6 +74,20 @@ TEST_CASE("culling: what may cast a shadow into the picture stays") {
   CHECK(met(view({light(LightKind::point, {0, 40, 49.5})}), cubes) == Marks{1, 0, 0, 0, 1});
   const std::vector<Light> both{light(LightKind::point, {0, 40, -9.5}), light(LightKind::point, {60, 40, -9.5})};
   CHECK(met(view(both), cubes) == Marks{1, 1, 0, 1, 0});
+}
+
+TEST_CASE("culling: the same for any number of threads, of which some see nothing") {
+  std::vector<Instance> cubes;
+  for (int i = 0; i < 40'000; ++i) cubes.push_back(cube_at({-0.5 + 10.0 * (i % 7), 60, 10.0 * (i % 5)}));
+  cubes.push_back(cube_at({-0.5, -0.5, -10}));
+  const View v = view({light(LightKind::directional, {}, {0, -1, 0})});
+  for (const unsigned threads : {1u, 2u, 16u}) {
+    const ThreadLimit limit(threads);
+    for (int run = 0; run < 20; ++run) {
+      const Marks marks = met(v, cubes);
+      REQUIRE(std::count(marks.begin(), marks.end(), 1) == 1);
+    }
+  }
 }
 
 TEST_CASE("culling: lights that do not reach what is seen cast no shadow") {
