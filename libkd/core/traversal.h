@@ -36,6 +36,35 @@ struct StackEntry {
   float s_exit;
 };
 
+/// Where a ray is on its way through a tree.
+struct Way {
+  float s_entry;   // where it enters the cell it is in
+  float s_exit;    // and leaves it
+  float s_resume;  // where the cell on top of the stack begins; never beyond where the one below it does
+};
+
+/// A step down, for a ray of which `origin` and `inverse` are the components along the node's axis: the index of the
+/// child that it meets first, kEmptyLeaf if it meets none. Of two it meets, remember(far) gets the other, which ends
+/// where the cell did: way.s_exit, not yet changed.
+template <class Remember>
+KD_HD KD_INLINE uint32_t step_down(Node node, float origin, float inverse, Way& way, Remember&& remember) {
+  const float s = (split_plane(node) - origin) * inverse, s_more = s * kMargin;
+  // Integer arithmetic in place of branches: on a GPU, lanes that part over a node take longer than any of its
+  // cases. Empty children are neither visited nor remembered.
+  const uint32_t down = std::bit_cast<uint32_t>(inverse) >> 31;
+  const uint32_t near = first_child(node) + down, far = first_child(node) + 1 - down;
+  const uint32_t near_empty = kLowerEmpty << down, far_empty = near_empty ^ (kLowerEmpty | kUpperEmpty);
+  const bool to_near = s_more >= way.s_entry && (node.link & near_empty) == 0;
+  const bool to_far = s <= way.s_exit && (node.link & far_empty) == 0;
+  if (to_near && to_far) {
+    remember(far);
+    way.s_resume = least_of(way.s_exit, s_more);
+  }
+  if (to_near) way.s_exit = least_of(way.s_exit, s_more);
+  if (!to_near) way.s_entry = largest_of(way.s_entry, s);
+  return to_near ? near : to_far ? far : kEmptyLeaf;
+}
+
 }  // namespace detail
 
 /// The triangle the ray meets first within [s_min, min(s_max, s_limit)], or with RayMode::any some triangle it meets
@@ -53,32 +82,19 @@ KD_HD inline uint32_t traverse(const ObjectView& object, const LatticeRay& ray, 
   float s_best = min_of(ray.s_max, s_limit);  // `nearest`, rounded up
   typename Test::Distance nearest = s_best;
 
-  float s_entry = ray.s_min;
-  float s_exit = min_of(ray.s_exit, s_best) * kMargin;
-  float s_resume = s_exit;  // where the cell on top of the stack begins; never beyond where the one below it does
+  const float s_out = min_of(ray.s_exit, s_best) * kMargin;
+  Way way{ray.s_min, s_out, s_out};
   Node node = load(object.nodes);
 
   while (true) {
     while (!is_leaf(node)) {
       counter.node();
       const int axis = split_axis(node);
-      const float inverse = ray.inverse[axis];
-      const float s = (split_plane(node) - ray.origin[axis]) * inverse, s_more = s * kMargin;
-      // Integer arithmetic in place of branches: on a GPU, lanes that part over a node take longer than any of its
-      // cases. Empty children are neither visited nor remembered.
-      const uint32_t down = std::bit_cast<uint32_t>(inverse) >> 31;
-      const uint32_t near = first_child(node) + down, far = first_child(node) + 1 - down;
-      const uint32_t near_empty = kLowerEmpty << down, far_empty = near_empty ^ (kLowerEmpty | kUpperEmpty);
-      const bool to_near = s_more >= s_entry && (node.link & near_empty) == 0;
-      const bool to_far = s <= s_exit && (node.link & far_empty) == 0;
-      if (to_near && to_far) {
-        stack[depth] = {far, s_exit};
+      const uint32_t next = step_down(node, ray.origin[axis], ray.inverse[axis], way, [&](uint32_t far) {
+        stack[depth] = {far, way.s_exit};
         ++depth;
-        s_resume = least_of(s_exit, s_more);
-      }
-      if (to_near) s_exit = least_of(s_exit, s_more);
-      if (!to_near) s_entry = largest_of(s_entry, s);
-      node = load(object.nodes + (to_near ? near : to_far ? far : kEmptyLeaf));
+      });
+      node = load(object.nodes + next);
     }
 
     counter.leaf();
@@ -100,10 +116,10 @@ KD_HD inline uint32_t traverse(const ObjectView& object, const LatticeRay& ray, 
 
     if (depth == 0) return best;
     // Beyond the nearest hit there is nothing left to find.
-    s_entry = s_resume * kResumeMargin;
-    if (s_best < s_entry) return best;
+    way.s_entry = way.s_resume * kResumeMargin;
+    if (s_best < way.s_entry) return best;
     --depth;
-    s_resume = s_exit = stack[depth].s_exit;
+    way.s_resume = way.s_exit = stack[depth].s_exit;
     node = load(object.nodes + stack[depth].node);
   }
 }

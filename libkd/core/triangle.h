@@ -164,7 +164,9 @@ class ExactTest {
   using Distance = double;
 
   KD_HD KD_INLINE explicit ExactTest(const LatticeRay& ray)
-      : shear_(detail::shear_along(ray, ray.axis)), sign_(ray.direction[ray.axis]) {}
+      : ExactTest(detail::shear_along(ray, ray.axis), ray.direction[ray.axis]) {}
+  /// Of a ray that is kept as what the test needs of it; the sign is the direction's along the axis.
+  KD_HD KD_INLINE ExactTest(const detail::Shear<float>& shear, float sign) : shear_(shear), sign_(sign) {}
 
   /// Whether the ray, taken over all s, passes through the triangle, and then its distance s, good to 2^-50 of the
   /// largest vertex distance. Triangles around an edge or a vertex that the ray passes through are at one distance: for
@@ -172,16 +174,27 @@ class ExactTest {
   /// a body is entered before it is left. (The limit on s is for tests that gain by it, core/float_triangle.h.)
   template <RayMode mode, class Counter>
   KD_HD KD_INLINE bool meets(const TriangleVertices& triangle, float, double& s, Counter& counter) const {
-    const auto decision = shear_.filter(triangle);
+    const Decision decision = filter(triangle);
     if (decision.certain && decision.apart) return false;
     counter.evaluated_in_double();
+    return meets_in_double<mode>(triangle, decision.certain, s);
+  }
+
+  using Decision = detail::Shear<float>::Decision;
+
+  /// What float32 can tell: `certain` and `apart` is a miss.
+  KD_HD KD_INLINE Decision filter(const TriangleVertices& triangle) const { return shear_.filter(triangle); }
+
+  /// `meets` for a triangle that the filter does not reject, and whether it was certain.
+  template <RayMode mode>
+  KD_HD KD_INLINE bool meets_in_double(const TriangleVertices& triangle, bool certain, double& s) const {
     const Weights w = weigh(triangle);
-    if (!decision.certain && !w.all_on_one_side()) return false;
+    if (!certain && !w.all_on_one_side()) return false;
     // None of the three is on the other side of 0, and not all are 0: that is a triangle seen edge-on, and missed.
     s = w.distance_times_sum(sign_) * w.inverse_sum();
     if constexpr (mode == RayMode::closest) {
       const bool behind = s < 0;  // and stays there
-      if (!decision.certain && !behind && w.touches() && leaves_by(w)) s += kLeavingLater * w.extent();
+      if (!certain && !behind && w.touches() && leaves_by(w)) s += kLeavingLater * w.extent();
     }
     return true;
   }
