@@ -25,12 +25,14 @@ Result<ImageSize> parse_size(const std::string& text) {
 
 Result<RayMeasurement> measure_rays(const render::Device& device, const nkd::ObjectFile& object, const char* name,
                                     std::span<const render::RayRecord> rays, RayMode mode, render::TriangleTest test,
-                                    const Effort& effort) {
-  const render::TraceJob job{rays, mode,          effort.warm_ups, effort.repeats, effort.count_steps,
-                             test, effort.layout, effort.packets};
+                                    const Effort& effort, bool diffuse) {
+  const bool scattered = effort.scattered == Scattered::all || (diffuse && effort.scattered == Scattered::diffuse);
+  const bool can_be = test == render::TriangleTest::exact && device.backend->name != "cpu";
+  const render::TraceJob job{rays, mode,          effort.warm_ups, effort.repeats,     effort.count_steps,
+                             test, effort.layout, effort.packets,  scattered && can_be};
   auto outcome = device.backend->trace(object, job, device.index);
   if (!outcome) return outcome.error();
-  RayMeasurement m{name, mode, rays.size(), ray_hash(rays), 0, 0, std::move(*outcome)};
+  RayMeasurement m{name, mode, job.scattered, rays.size(), ray_hash(rays), 0, 0, std::move(*outcome)};
   double sum_t = 0;
   for (const render::HitRecord& hit : m.outcome.hits) {
     if (hit.primitive < 0) continue;
@@ -51,7 +53,7 @@ Result<std::array<RayMeasurement, 3>> SharedTrace::measure(const render::Device&
   if (!secondary_) secondary_ = secondary_rays(object, camera_, primary_, primary->outcome.hits);
   auto shadow = measure_rays(device, object, "shadow", secondary_->shadow, RayMode::any, test, effort);
   if (!shadow) return shadow.error();
-  auto diffuse = measure_rays(device, object, "diffuse", secondary_->diffuse, RayMode::closest, test, effort);
+  auto diffuse = measure_rays(device, object, "diffuse", secondary_->diffuse, RayMode::closest, test, effort, true);
   if (!diffuse) return diffuse.error();
   return std::array{std::move(*primary), std::move(*shadow), std::move(*diffuse)};
 }

@@ -24,6 +24,9 @@ struct ImageSize {
 /// "1920x1080". ErrorClass::usage.
 Result<ImageSize> parse_size(const std::string& text);
 
+/// Which rays are taken as having nothing to do with their neighbours (CUDA and the exact test only).
+enum class Scattered { none, diffuse, all };
+
 /// What is asked of every ray: nothing of it changes a hit.
 struct Effort {
   int warm_ups = 3;
@@ -31,12 +34,14 @@ struct Effort {
   bool count_steps = false;  // CPU only
   TriangleLayout layout = TriangleLayout::expanded;
   bool packets = true;  // CPU and the exact test only
+  Scattered scattered = Scattered::diffuse;
 };
 
 /// What one class of rays came to.
 struct RayMeasurement {
   const char* name = "";
   RayMode mode = RayMode::closest;
+  bool scattered = false;  // as they were taken
   uint64_t rays = 0;
   uint64_t ray_hash = 0;
   uint64_t hit_count = 0;
@@ -47,10 +52,10 @@ struct RayMeasurement {
   double mrays_per_second() const { return static_cast<double>(rays) / seconds() * 1e-6; }
 };
 
-/// Errors as those of the device's backend.
+/// Errors as those of the device's backend. `diffuse`: the rays are.
 Result<RayMeasurement> measure_rays(const render::Device& device, const nkd::ObjectFile& object, const char* name,
                                     std::span<const render::RayRecord> rays, RayMode mode, render::TriangleTest test,
-                                    const Effort& effort);
+                                    const Effort& effort, bool diffuse = false);
 
 /// The shared rays of one camera, for one mesh in any number of objects: the secondary rays start where the primary
 /// rays hit the first of them, so that all objects get the same rays.

@@ -24,7 +24,8 @@ namespace {
 using tools::Json;
 
 struct Options : RayOptions {
-  std::string object, rays, camera, size = "1920x1080", mode = "closest", test, layout = "expanded", hits, json;
+  std::string object, rays, camera, size = "1920x1080", mode = "closest", test, layout = "expanded",
+                                    scattered = "diffuse", hits, json;
 };
 
 Result<std::vector<render::RayRecord>> read_rays(const std::string& path) {
@@ -45,6 +46,7 @@ Json result_json(const RayMeasurement& m, bool count_steps) {
   const std::vector<double>& seconds = m.outcome.seconds;
   Json j{{"class", m.name},
          {"mode", m.mode == RayMode::any ? "any" : "closest"},
+         {"scattered", m.scattered},
          {"rays", m.rays},
          {"ray_hash", hash_text(m.ray_hash)},
          {"hits", m.hit_count},
@@ -200,11 +202,20 @@ Command trace_command(CLI::App& app) {
       ->capture_default_str();
   c->add_flag("!--single-rays", o->effort.packets,
               "On the CPU, the exact test's rays one by one, as those of the other tests are, not in packets");
+  c->add_option(
+       "--scattered", o->scattered,
+       "On CUDA, which of the exact test's rays have nothing to do with their neighbours, so that the lanes of a "
+       "warp share the work of all its rays: none, the diffuse ones of the shared rays, or all")
+      ->check(CLI::IsMember({"none", "diffuse", "all"}))
+      ->capture_default_str();
   c->add_flag("--count", o->effort.count_steps, "Count nodes, leaves and triangles a ray (CPU)");
   c->add_option("--hits", o->hits, "Write the hits: float t, int32 primitive, float u, v, 16 bytes each");
   c->add_option("--json", o->json, "Write a JSON report to this file, or to stdout (-)");
   return {c, [o] {
             o->effort.layout = *tools::layout_named(o->layout);
+            o->effort.scattered = o->scattered == "none"  ? Scattered::none
+                                  : o->scattered == "all" ? Scattered::all
+                                                          : Scattered::diffuse;
             const auto done = trace(*o);
             return done ? 0 : tools::fail(kKdbench, done.error());
           }};

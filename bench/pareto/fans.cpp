@@ -180,22 +180,18 @@ FanCounts count_fans(const Targets& targets, std::span<const AimedRay> rays, con
   const Lattice& lattice = object.summary().lattice;
   const InverseFrame to_lattice = invert(lattice.frame());
   FanCounts counts{rays.size(), 0, 0};
-  render::TraceJob job;
-  job.test = test;
-  render::with_kernel(job, [&]<RayMode mode, class Test>() {
+  render::with_test(test, [&]<class Test>() {
     for (const AimedRay& aimed : rays) {
       LatticeRay ray;
       const render::RayRecord& r = aimed.ray;
-      const Vec3d o = to_lattice.apply_point({r.ox, r.oy, r.oz}), d = to_lattice.apply_vector({r.dx, r.dy, r.dz});
-      const bool enters = Test::kExact ? snap_ray(o, d, r.t_min, r.t_max, lattice.bits, ray)
-                                       : render::float_ray(o, d, r.t_min, r.t_max, lattice.bits, ray);
+      const bool enters = render::lattice_ray<Test::kExact>(to_lattice, lattice.bits, r, ray);
       int met = 0;
       for (const StarTriangle& t : targets.star(targets.all[aimed.target])) {
         TriangleVertices vertices;
         packed.expand(triangles.index_of(t.primitive), vertices);
         typename Test::Distance s;
         NoCounter counter;
-        met += enters && Test{ray}.template meets<mode>(vertices, ray.s_max, s, counter);
+        met += enters && Test{ray}.template meets<RayMode::closest>(vertices, ray.s_max, s, counter);
       }
       counts.missed += met == 0;
       counts.twice += met > 1;

@@ -91,8 +91,9 @@ Result<TraceOutcome> cpu_trace(const nkd::ObjectFile& object, const TraceJob& jo
   TraceOutcome out;
   out.hits.resize(job.rays.size());
   out.device_bytes = traversal_bytes(geometry, job.layout);
-  with_kernel(job, [&]<RayMode mode, class Test>() {
-    with_layout(job.layout, [&]<TriangleLayout layout>() { trace_all<mode, Test, layout>(view, job, out); });
+  with_test(job.test, [&]<class Test>() {
+    with_mode_and_layout(job,
+                         [&]<RayMode mode, TriangleLayout layout>() { trace_all<mode, Test, layout>(view, job, out); });
   });
   return out;
 }

@@ -47,14 +47,19 @@ KD_HD KD_INLINE HitRecord record_of(const TraceView& view, const LatticeRay& ray
           static_cast<float>(hit.v)};
 }
 
+/// The ray in the object's lattice, snapped for the exact test. False: it misses the cube.
+template <bool exact>
+KD_HD KD_INLINE bool lattice_ray(const InverseFrame& to_lattice, int bits, const RayRecord& r, LatticeRay& ray) {
+  const Vec3d origin = to_lattice.apply_point({r.ox, r.oy, r.oz});
+  const Vec3d direction = to_lattice.apply_vector({r.dx, r.dy, r.dz});
+  return exact ? snap_ray(origin, direction, r.t_min, r.t_max, bits, ray)
+               : float_ray(origin, direction, r.t_min, r.t_max, bits, ray);
+}
+
 template <RayMode mode, class Test, TriangleLayout layout, class Counter>
 KD_HD inline HitRecord trace_ray(const TraceView& view, const RayRecord& r, Counter& counter) {
-  const Vec3d origin = view.to_lattice.apply_point({r.ox, r.oy, r.oz});
-  const Vec3d direction = view.to_lattice.apply_vector({r.dx, r.dy, r.dz});
   LatticeRay ray;
-  const bool enters = Test::kExact ? snap_ray(origin, direction, r.t_min, r.t_max, view.object.bits, ray)
-                                   : float_ray(origin, direction, r.t_min, r.t_max, view.object.bits, ray);
-  if (!enters) return miss_of(r);
+  if (!lattice_ray<Test::kExact>(view.to_lattice, view.object.bits, r, ray)) return miss_of(r);
   const uint32_t triangle = traverse<mode, Test, layout>(view.object, ray, ray.s_max, kNoTriangle, counter);
   if (triangle == kNoTriangle) return miss_of(r);
   return record_of(view, ray, triangle, Test{ray}.locate(view.object.triangle<layout>(triangle)));
@@ -68,7 +73,8 @@ struct TraceJob {
   bool count_steps = false;                 // CPU only: one more pass that counts
   TriangleTest test = TriangleTest::exact;  // of float32 vertices the exact test is none
   TriangleLayout layout = TriangleLayout::expanded;
-  bool packets = true;  // CPU and the exact test only: rays go in packets, as they follow one another; the same hits
+  bool packets = true;     // CPU and the exact test only: rays go in packets, as they follow one another; the same hits
+  bool scattered = false;  // CUDA and the exact test only: rays have nothing to do with their neighbours; the same hits
 };
 
 /// Calls visit.operator()<Test>() for a triangle test.
@@ -84,14 +90,14 @@ auto with_test(TriangleTest test, Visit&& visit) {
   }
 }
 
-/// Calls visit.operator()<mode, Test>() for the kernel that a job asks for, in either layout.
+/// Calls visit.operator()<mode, layout>() for those of a job.
 template <class Visit>
-void with_kernel(const TraceJob& job, Visit&& visit) {
-  with_test(job.test, [&]<class Test>() {
+void with_mode_and_layout(const TraceJob& job, Visit&& visit) {
+  with_layout(job.layout, [&]<TriangleLayout layout>() {
     if (job.mode == RayMode::closest) {
-      visit.template operator()<RayMode::closest, Test>();
+      visit.template operator()<RayMode::closest, layout>();
     } else {
-      visit.template operator()<RayMode::any, Test>();
+      visit.template operator()<RayMode::any, layout>();
     }
   });
 }

@@ -1,6 +1,9 @@
 // Tracing rays against one object on the device, timed by its own events.
+#include <algorithm>
+
 #include "render/cuda/cuda_backend.h"
 #include "render/cuda/device_object.h"
+#include "render/cuda/warp_trace.h"
 #include "render/expand.h"
 
 namespace kd::render {
@@ -14,6 +17,27 @@ __global__ void __launch_bounds__(kBlock, kTraceBlocks)
   if (i >= count) return;
   NoCounter counter;
   hits[i] = trace_ray<mode, Test, layout>(view, load(rays + i), counter);
+}
+
+/// How many blocks of warp_trace_kernel the device holds at once. No more shared memory is set aside than they take:
+/// the rest is cache, and scattered rays want it.
+template <class Kernel>
+cudaError_t count_blocks(Kernel* kernel, int device, unsigned& blocks) {
+  const auto ask = [&](cudaDeviceAttr which) {
+    int value = 0;
+    cudaDeviceGetAttribute(&value, which, device);
+    return value;
+  };
+  constexpr int kBlocks = kWarpTraceBlocks, kShared = kBlock / kLanes * sizeof(WarpRays);
+  const int all = std::max(ask(cudaDevAttrMaxSharedMemoryPerMultiprocessor), 1);
+  const int percent = (100 * kBlocks * (kShared + ask(cudaDevAttrReservedSharedMemoryPerBlock)) + all - 1) / all;
+  if (const cudaError_t status =
+          cudaFuncSetAttribute(kernel, cudaFuncAttributePreferredSharedMemoryCarveout, std::min(percent, 100)))
+    return status;
+  int at_once = 0;
+  const cudaError_t status = cudaOccupancyMaxActiveBlocksPerMultiprocessor(&at_once, kernel, kBlock, 0);
+  blocks = static_cast<unsigned>(std::min(at_once, kBlocks) * ask(cudaDevAttrMultiProcessorCount));
+  return status;
 }
 
 }  // namespace
@@ -33,6 +57,7 @@ Result<TraceOutcome> cuda_trace(const nkd::ObjectFile& object, const TraceJob& j
   uint32_t* source_primitives = nullptr;
   RayRecord* rays = nullptr;
   HitRecord* hits = nullptr;
+  uint32_t* taken = nullptr;
   const auto lay_out = [&] {
     memory.section("object");
     pieces = object_pieces(memory, geometry, job.layout);
@@ -40,6 +65,7 @@ Result<TraceOutcome> cuda_trace(const nkd::ObjectFile& object, const TraceJob& j
     memory.section("rays and hits");
     rays = memory.piece<RayRecord>(job.rays.size());
     hits = memory.piece<HitRecord>(job.rays.size());
+    taken = memory.piece<uint32_t>(1);
   };
   lay_out();
   if (auto allocated = memory.allocate(); !allocated) return allocated.error();
@@ -52,10 +78,26 @@ Result<TraceOutcome> cuda_trace(const nkd::ObjectFile& object, const TraceJob& j
 
   const TraceView view{pieces.view(lattice.bits), invert(lattice.frame()), source_primitives};
   const auto count = static_cast<uint32_t>(job.rays.size());
+  const bool by_warps = job.scattered && job.test == TriangleTest::exact;
+  unsigned blocks_at_once = 0;
+  if (by_warps) {
+    cudaError_t status = cudaSuccess;
+    with_mode_and_layout(job, [&]<RayMode mode, TriangleLayout layout>() {
+      status = count_blocks(warp_trace_kernel<mode, layout>, index, blocks_at_once);
+    });
+    KD_CUDA_TRY(status, "preparing to trace");
+  }
   const auto launch = [&] {
     if (count == 0) return;
-    with_kernel(job, [&]<RayMode mode, class Test>() {
-      with_layout(job.layout, [&]<TriangleLayout layout>() {
+    if (by_warps) {
+      cudaMemsetAsync(taken, 0, sizeof *taken, stream);
+      with_mode_and_layout(job, [&]<RayMode mode, TriangleLayout layout>() {
+        warp_trace_kernel<mode, layout><<<blocks_at_once, kBlock, 0, stream>>>(view, rays, count, taken, hits);
+      });
+      return;
+    }
+    with_test(job.test, [&]<class Test>() {
+      with_mode_and_layout(job, [&]<RayMode mode, TriangleLayout layout>() {
         trace_kernel<mode, Test, layout><<<blocks_for(count), kBlock, 0, stream>>>(view, rays, count, hits);
       });
     });

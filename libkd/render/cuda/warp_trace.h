@@ -1,0 +1,339 @@
+// Rays that have nothing to do with their neighbours, as diffuse bounces have not: a warp takes 32 at a time, and each
+// of its lanes works for all of them.
+//
+// Where a lane follows one ray and nothing else (core/traversal.h), such rays leave 8 of 32 lanes at work: rays end
+// sooner or later, come to a leaf after fewer or more steps, and leaves have fewer or more triangles. Mending one of
+// these spreads widens the other two, so all three are:
+//   - lanes whose rays have ended take others, once enough of them are idle to share the work of beginning them
+//     (Aila and Laine, "Understanding the Efficiency of Ray Traversal on GPUs", HPG 2009, section 3.3);
+//   - a lane that comes to a leaf puts it aside and goes on, up to kAside times, while others have found none yet
+//     (ibid., speculative traversal);
+//   - the triangles of all leaves put aside are dealt out to the lanes, whosever rays they are for; those that float32
+//     cannot reject are queued, and decided in double by as many lanes as possible.
+// So what a ray is tested with is in shared memory, 72 bytes, and a lane's registers hold only its way down the tree.
+// Some cells are visited in vain, and in another order. That changes no hit: the answer depends on no order of visits
+// (core/traversal.h).
+#pragma once
+
+#include "render/cuda/cuda.h"
+#include "render/trace.h"
+
+namespace kd::render {
+
+constexpr uint32_t kLanes = 32;
+constexpr unsigned kAllLanes = 0xffffffffu;
+
+// All chosen by measurement on an H100; each gains or loses a few percent when changed by half.
+constexpr unsigned kWarpTraceBlocks = 9;  // of kBlock threads a multiprocessor: 56 registers a thread
+constexpr uint32_t kAside = 2;            // leaves that a lane puts aside
+constexpr int kStepsAtOnce = 4;           // between two looks at what the other lanes have found
+constexpr int kStragglers = 4;            // lanes without a leaf that the others do not wait for
+constexpr uint32_t kEnoughIdle = 14;      // lanes that begin rays together
+
+/// What the rays of a warp are tested with, a column a ray. The three rows of planes lie equally far apart, so that a
+/// node's axis finds its row by one multiplication. In all 9 blocks it is 93 KiB a multiprocessor, just below one of
+/// the sizes that shared memory comes in; the next one, and bounce rays are 5 % slower, for the L1 cache has the rest.
+struct WarpRays {
+  struct Plane {
+    float origin, inverse;  // of the ray, along an axis
+  };
+  struct Leaf {
+    uint32_t first, count;  // references
+  };
+  struct Dealt {
+    uint32_t ray, reference;  // the leaf's first reference, less the number of its first pair
+  };
+  struct Undecided {
+    uint32_t ray, triangle;
+  };
+
+  Plane x[kLanes];
+  union {
+    Leaf leaves[kAside * kLanes];
+    Dealt dealt[kAside * kLanes];
+  };
+  Plane y[kLanes];
+  float2 slopes[kLanes];
+  double nearest[kLanes];  // of the hits so far; the ray's s_max before
+  Plane z[kLanes];
+  uint32_t best[kLanes];  // the triangle of that hit, or kNoHit; above it the ray's axis and its direction's sign
+  float s_min[kLanes];
+  Undecided queue[kLanes];
+
+  // A file of 4 GiB, the largest there is, has fewer triangles than 2^29: each takes more than 8 bytes of it.
+  static constexpr int kSignBit = 29, kAxisBit = 30;
+  static constexpr uint32_t kNoHit = (1u << kSignBit) - 1;
+  static constexpr uint32_t kCertain = 1u << 31;  // in Undecided::ray
+
+  __device__ void keep(uint32_t column, const LatticeRay& ray) {
+    const auto shear = detail::shear_along(ray, ray.axis);
+    x[column] = {ray.origin.x, ray.inverse.x};
+    y[column] = {ray.origin.y, ray.inverse.y};
+    z[column] = {ray.origin.z, ray.inverse.z};
+    slopes[column] = {shear.slope_x, shear.slope_y};
+    nearest[column] = ray.s_max;
+    s_min[column] = ray.s_min;
+    const uint32_t backwards = ray.direction[ray.axis] < 0;
+    best[column] = static_cast<uint32_t>(ray.axis) << kAxisBit | backwards << kSignBit | kNoHit;
+  }
+
+  __device__ ExactTest test(uint32_t column) const {
+    const uint32_t kept = best[column], axis = kept >> kAxisBit;
+    const float2 slope = slopes[column];
+    const Vec3f origin{x[column].origin, y[column].origin, z[column].origin};
+    return {{origin, slope.x, slope.y, axis == 0, axis == 1}, (kept >> kSignBit & 1) != 0 ? -1.0f : 1.0f};
+  }
+
+  __device__ uint32_t hit(uint32_t column) const { return best[column] & kNoHit; }
+
+  /// Makes it the hit if it is nearer, or as near and of the lower index. One lane at a time for each ray.
+  __device__ void meet(uint32_t column, uint32_t triangle, double s) {
+    const uint32_t kept = best[column];
+    if (s > nearest[column] || (s == nearest[column] && triangle > (kept & kNoHit))) return;
+    nearest[column] = s;
+    best[column] = (kept & ~kNoHit) | triangle;
+  }
+};
+static_assert(offsetof(WarpRays, z) == 2 * offsetof(WarpRays, y));
+static_assert(kWarpTraceBlocks * (kBlock / kLanes * sizeof(WarpRays) + 1024) <= 100 * 1024);
+
+/// One warp's work. Every function but those of a single ray is for all of its lanes at once.
+template <RayMode mode, TriangleLayout layout>
+class WarpTrace {
+ public:
+  /// `stack`: kMaxDepth entries of the lane's own.
+  __device__ WarpTrace(const TraceView& view, WarpRays& rays, detail::StackEntry* stack)
+      : view_(view), rays_(rays), stack_(stack) {
+    // An address of its own for the planes: left to itself the compiler computes it anew in every step.
+    planes_ = static_cast<uint32_t>(__cvta_generic_to_shared(&rays.x[lane()]));
+    asm volatile("" : "+r"(planes_));
+  }
+
+  /// Traces rays until there are none, taking them by adding to *taken, which all warps share.
+  __device__ void run(const RayRecord* records, uint32_t count, uint32_t* taken, HitRecord* hits) {
+    bool more = true;
+    record_ = count;
+    while (true) {
+      const unsigned live = __ballot_sync(kAllLanes, active_);
+      const uint32_t idle = kLanes - __popc(live);
+      if (live != 0 && (!more || idle < kEnoughIdle)) {
+        find_leaves(live);
+        test_leaves();
+        continue;
+      }
+      if (!active_ && record_ < count) finish(records, hits);
+      if (!more) return;
+      uint32_t first = 0;
+      if (lane() == 0) first = atomicAdd(taken, idle);
+      first = __shfl_sync(kAllLanes, first, 0);
+      more = first + idle < count;
+      if (!active_) {
+        record_ = first + __popc(~live & before());
+        if (record_ < count) begin(load(records + record_));
+      }
+      __syncwarp();
+    }
+  }
+
+ private:
+  __device__ static uint32_t lane() { return threadIdx.x % kLanes; }
+  __device__ static unsigned or_of_lanes(unsigned bits) {
+#if __CUDA_ARCH__ >= 800
+    return __reduce_or_sync(kAllLanes, bits);
+#else
+    for (uint32_t distance = 1; distance < kLanes; distance *= 2) bits |= __shfl_xor_sync(kAllLanes, bits, distance);
+    return bits;
+#endif
+  }
+  /// The lanes before this one.
+  __device__ static unsigned before() { return (1u << lane()) - 1; }
+
+  __device__ void begin(const RayRecord& r) {
+    LatticeRay ray;
+    active_ = lattice_ray<true>(view_.to_lattice, view_.object.bits, r, ray);
+    rays_.best[lane()] = WarpRays::kNoHit;
+    if (!active_) return;
+    rays_.keep(lane(), ray);
+    t_base_ = ray.t_base;
+    t_scale_ = ray.t_scale;
+    s_best_ = ray.s_max;
+    const float s_out = min_of(ray.s_exit, ray.s_max) * detail::kMargin;
+    way_ = {ray.s_min, s_out, s_out};
+    depth_ = 0;
+    node_ = load(view_.object.nodes);
+  }
+
+  __device__ void finish(const RayRecord* records, HitRecord* hits) const {
+    const uint32_t triangle = rays_.hit(lane());
+    if (triangle == WarpRays::kNoHit) {
+      hits[record_] = miss_of(load(records + record_));
+      return;
+    }
+    LatticeRay ray;
+    ray.t_base = t_base_;
+    ray.t_scale = t_scale_;
+    const TriangleHit hit = rays_.test(lane()).locate(view_.object.triangle<layout>(triangle));
+    hits[record_] = record_of(view_, ray, triangle, hit);
+  }
+
+  /// Goes on until all but a few of the `live` lanes have put a leaf aside or come to an end.
+  __device__ void find_leaves(unsigned live) {
+    aside_ = 0;
+    unsigned without;
+    do {
+      if (active_) {
+#pragma unroll
+        for (int i = 0; i < kStepsAtOnce; ++i) {
+          if (is_leaf(node_)) break;
+          step();
+        }
+        const uint32_t references = reference_count(node_);
+        // An empty leaf is passed even where there is no room for others: its cell may be none at all.
+        if (is_leaf(node_) && (references == 0 || aside_ < kAside)) {
+          if (references != 0) {
+            rays_.leaves[aside_ * kLanes + lane()] = {first_reference(node_), references};
+            ++aside_;
+          }
+          take_from_stack();
+        }
+      }
+      without = __ballot_sync(kAllLanes, active_ && aside_ == 0);
+    } while (__popc(without) > kStragglers || without == live);
+  }
+
+  __device__ void step() {
+    const WarpRays::Plane plane = plane_along(split_axis(node_));
+    const uint32_t next = detail::step_down(node_, plane.origin, plane.inverse, way_, [&](uint32_t far) {
+      stack_[depth_] = {far, way_.s_exit};
+      ++depth_;
+    });
+    node_ = load(view_.object.nodes + next);
+  }
+
+  __device__ WarpRays::Plane plane_along(int axis) const {
+    WarpRays::Plane plane;
+    asm volatile("ld.shared.v2.f32 {%0, %1}, [%2];"
+                 : "=f"(plane.origin), "=f"(plane.inverse)
+                 : "r"(planes_ + static_cast<uint32_t>(axis) * static_cast<uint32_t>(offsetof(WarpRays, y))));
+    return plane;
+  }
+
+  __device__ void take_from_stack() {
+    way_.s_entry = way_.s_resume * detail::kResumeMargin;
+    active_ = depth_ != 0 && s_best_ >= way_.s_entry;
+    if (!active_) return;
+    --depth_;
+    way_.s_resume = way_.s_exit = stack_[depth_].s_exit;
+    node_ = load(view_.object.nodes + stack_[depth_].node);
+  }
+
+  /// Tests the triangles of the leaves put aside, and ends the rays that need not go on.
+  __device__ void test_leaves() {
+    __syncwarp();
+    const unsigned have_a = __ballot_sync(kAllLanes, aside_ > 0), have_b = __ballot_sync(kAllLanes, aside_ > 1);
+    static_assert(kAside == 2);
+    const WarpRays::Leaf a = rays_.leaves[lane()], b = rays_.leaves[kLanes + lane()];
+    const uint32_t in_a = aside_ > 0 ? a.count : 0, in_b = aside_ > 1 ? b.count : 0;
+
+    // Pairs of a ray and a triangle, numbered from lane to lane.
+    uint32_t end = in_a + in_b;
+#pragma unroll
+    for (uint32_t distance = 1; distance < kLanes; distance *= 2) {
+      const uint32_t lower = __shfl_up_sync(kAllLanes, end, distance);
+      if (lane() >= distance) end += lower;
+    }
+    const uint32_t pairs = __shfl_sync(kAllLanes, end, kLanes - 1), pair_b = end - in_b, pair_a = pair_b - in_a;
+    const uint32_t at = __popc(have_a & before()) + __popc(have_b & before());
+    __syncwarp();
+    if (aside_ > 0) rays_.dealt[at] = {lane(), a.first - pair_a};
+    if (aside_ > 1) rays_.dealt[at + 1] = {lane(), b.first - pair_b};
+    __syncwarp();
+
+    uint32_t leaves = 0, queued = 0;
+    for (uint32_t base = 0;; base += kLanes) {
+      WarpRays::Undecided pair{};
+      bool undecided = false;
+      if (base < pairs) {
+        // Which of these pairs begin a leaf, a bit each.
+        const auto begins = [&](uint32_t pair, uint32_t in) {
+          return in != 0 && pair - base < kLanes ? 1u << (pair - base) : 0;
+        };
+        const unsigned beginning = or_of_lanes(begins(pair_a, in_a) | begins(pair_b, in_b));
+        if (base + lane() < pairs) {
+          const WarpRays::Dealt leaf = rays_.dealt[leaves + __popc(beginning & (before() * 2 + 1)) - 1];
+          pair = {leaf.ray, view_.object.references[leaf.reference + base + lane()]};
+          const auto decision = rays_.test(pair.ray).filter(view_.object.triangle<layout>(pair.triangle));
+          undecided = !(decision.certain && decision.apart);
+          if (decision.certain) pair.ray |= WarpRays::kCertain;
+        }
+        leaves += __popc(beginning);
+      }
+      const unsigned left = __ballot_sync(kAllLanes, undecided);
+      if (base >= pairs || queued + __popc(left) > kLanes) {
+        decide(queued);
+        queued = 0;
+      }
+      if (base >= pairs) break;
+      if (undecided) rays_.queue[queued + __popc(left & before())] = pair;
+      queued += __popc(left);
+    }
+
+    if (aside_ == 0) return;
+    if constexpr (mode == RayMode::any) {
+      if (rays_.hit(lane()) != WarpRays::kNoHit) active_ = false;
+    } else {
+      s_best_ = rounded_up(rays_.nearest[lane()]);
+      if (s_best_ < way_.s_entry * detail::kResumeMargin) active_ = false;
+    }
+  }
+
+  /// Decides what is in the queue, in double.
+  __device__ void decide(uint32_t queued) {
+    __syncwarp();
+    bool hit = false;
+    double s = 0;
+    uint32_t ray = 0, triangle = 0;
+    if (lane() < queued) {
+      const WarpRays::Undecided pair = rays_.queue[lane()];
+      ray = pair.ray % kLanes;
+      triangle = pair.triangle;
+      hit = rays_.test(ray).template meets_in_double<mode>(view_.object.triangle<layout>(triangle),
+                                                           (pair.ray & WarpRays::kCertain) != 0, s) &&
+            s >= rays_.s_min[ray] && s <= rays_.nearest[ray];
+    }
+    // Of several lanes with hits of one ray, one after the other.
+    for (unsigned hits; (hits = __ballot_sync(kAllLanes, hit)) != 0; __syncwarp()) {
+      if (!hit) continue;
+      const unsigned same = __match_any_sync(hits, ray);
+      if ((same & before()) != 0) continue;
+      rays_.meet(ray, triangle, s);
+      hit = false;
+    }
+  }
+
+  const TraceView& view_;
+  WarpRays& rays_;
+  detail::StackEntry* stack_;
+  uint32_t planes_;  // of this lane's ray, in shared memory
+
+  bool active_ = false;  // the ray has cells to visit
+  uint32_t record_;      // which ray it is; of none if there are no more
+  double t_base_, t_scale_;
+  Node node_;
+  detail::Way way_;
+  float s_best_;
+  int depth_;
+  uint32_t aside_;  // leaves put aside
+};
+
+/// As many blocks as the device holds at once, each warp taking rays until there are none. *taken is 0 before.
+template <RayMode mode, TriangleLayout layout>
+__global__ void __launch_bounds__(kBlock, kWarpTraceBlocks)
+    warp_trace_kernel(const __grid_constant__ TraceView view, const RayRecord* records, uint32_t count, uint32_t* taken,
+                      HitRecord* hits) {
+  __shared__ WarpRays rays[kBlock / kLanes];
+  detail::StackEntry stack[kMaxDepth];
+  WarpTrace<mode, layout>(view, rays[threadIdx.x / kLanes], stack).run(records, count, taken, hits);
+}
+
+}  // namespace kd::render
