@@ -19,7 +19,8 @@ struct Backend {
   Result<int> (*count)();
   /// What the device is called, or why there is none of this index.
   Result<std::string> (*probe)(int index);
-  /// The scene on the device. It outlives the renderer and keeps its place in memory.
+  /// The scene on the device. It outlives the renderer and keeps its place in memory. Where its objects' geometry is
+  /// still being checked, what comes of that; ErrorClass::object.
   Result<std::unique_ptr<Renderer>> (*open)(const LoadedScene& scene, const RenderSettings& settings, int index);
   Result<TraceOutcome> (*trace)(const nkd::ObjectFile& object, const TraceJob& job, int index);
 };

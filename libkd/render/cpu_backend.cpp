@@ -49,9 +49,9 @@ TriangleLayout layout_of(const RenderSettings& settings) { return settings.layou
 
 class CpuRenderer final : public Renderer {
  public:
-  CpuRenderer(const LoadedScene& scene, const RenderSettings& settings)
+  CpuRenderer(const LoadedScene& scene, const RenderSettings& settings, const Timer& opening)
       : scene_(scene), settings_(settings), objects_(scene, layout_of(settings)), instances_(instance_views(scene)) {
-    holding_.upload_seconds = opening_.seconds();
+    holding_.upload_seconds = opening.seconds();
     holding_.object_bytes = object_bytes(scene, layout_of(settings));
     holding_.layout = layout_of(settings);
     holding_.scene_bytes = instances_.size() * sizeof(InstanceView) + scene.hierarchy.size() * sizeof(HierarchyNode) +
@@ -68,7 +68,6 @@ class CpuRenderer final : public Renderer {
   Result<RenderStats> render(Strip strip, Frame& frame, const Progress& progress) override;
 
  private:
-  Timer opening_;
   const LoadedScene& scene_;
   RenderSettings settings_;
   HostObjects objects_;
@@ -128,7 +127,9 @@ Result<int> cpu_count() { return 1; }
 Result<std::string> cpu_probe(int) { return fmt::format("CPU: {} threads", thread_count()); }
 
 Result<std::unique_ptr<Renderer>> cpu_open(const LoadedScene& scene, const RenderSettings& settings, int) {
-  return std::unique_ptr<Renderer>(std::make_unique<CpuRenderer>(scene, settings));
+  const Timer opening;
+  if (auto sound = scene.checks.all_sound(); !sound) return sound.error();
+  return std::unique_ptr<Renderer>(std::make_unique<CpuRenderer>(scene, settings, opening));
 }
 
 }  // namespace kd::render

@@ -112,6 +112,8 @@ Result<void> DeviceGroup::open_all() {
   for (const Device& device : devices_) {
     auto renderer = device.backend->open(*scene_, settings_, device.index);
     if (!renderer) {
+      if (renderer.error().error_class == ErrorClass::object)
+        return renderer.error();  // which no device is to blame for
       return Error{renderer.error().error_class, device.description, renderer.error().line()};
     }
     renderers_.push_back(std::move(*renderer));

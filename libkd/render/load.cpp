@@ -188,7 +188,6 @@ Result<void> load_objects(LoadedScene& loaded, Headers headers, std::span<const 
       ++loaded.skipped.unmet_objects;
       continue;
     }
-    if (auto sound = headers.files[i]->check_geometry(); !sound) return sound;
     loaded.object_slots[i] = static_cast<uint32_t>(loaded.objects.size());
     loaded.object_numbers.push_back(i);
     loaded.objects.push_back({std::move(*headers.files[i]), {}});
@@ -196,13 +195,16 @@ Result<void> load_objects(LoadedScene& loaded, Headers headers, std::span<const 
     own.materials = uses[i].own_materials && (needs.materials || loaded.summaries[i]->emissive);
     if (auto attributes = load_attributes(loaded.objects.back(), own, loaded.skipped); !attributes) return attributes;
   }
+  std::vector<const nkd::ObjectFile*> files;
+  for (const LoadedObject& object : loaded.objects) files.push_back(&object.file);
+  loaded.checks.start(std::move(files));
   return {};
 }
 
 }  // namespace
 
 Result<LoadedScene> load_scene(const scene::Scene& scene, const RenderSettings& settings,
-                               std::span<const double> frames, Extent extent) {
+                               std::span<const double> frames, Extent extent, Checking checking) {
   LoadedScene loaded;
   loaded.film = scene.film;
   loaded.window = settings.crop.value_or(image::Window{0, 0, scene.film.width, scene.film.height});
@@ -221,6 +223,9 @@ Result<LoadedScene> load_scene(const scene::Scene& scene, const RenderSettings& 
   loaded.background = scene.background;
   loaded.skipped.aov_buffers = static_cast<uint32_t>(image::kAovRows.size() - settings.aovs.size());
   if (auto looked = look_at_frame(loaded, scene, loaded.placed->frame()); !looked) return looked.error();
+  if (checking == Checking::done) {
+    if (auto sound = loaded.checks.all_sound(); !sound) return sound.error();
+  }
   return loaded;
 }
 

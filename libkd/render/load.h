@@ -9,6 +9,7 @@
 #include "image/channels.h"
 #include "image/film.h"
 #include "nkd/object_file.h"
+#include "render/geometry_checks.h"
 #include "render/view.h"
 #include "scene/placed_scene.h"
 #include "scene/scene.h"
@@ -47,6 +48,7 @@ struct Skipped {
 
 struct LoadedScene {
   std::vector<LoadedObject> objects;                   // that rays can meet, in the scene's order
+  GeometryChecks checks;                               // of theirs, in the same order
   std::vector<uint32_t> object_numbers;                // of the scene: which those are
   std::vector<uint32_t> object_slots;                  // and back: an index into `objects`, or kNone
   std::vector<std::optional<nkd::Summary>> summaries;  // of the scene's objects; none: no part places it
@@ -79,6 +81,11 @@ enum class Extent {
   all   // that is placed, for any frame
 };
 
+enum class Checking {
+  done,     // geometry is found sound before load_scene returns
+  going_on  // or goes on being checked: nothing is to follow it before LoadedScene::checks says so
+};
+
 /// Loads what `frames` of the film need, and stands at the first of them: opens the objects that rays can meet in some
 /// of them, validates what will be read, and places their instances (scene/culling.h). Of other objects that parts
 /// place the headers are read and validated, which say where they end.
@@ -87,7 +94,8 @@ enum class Extent {
 /// scene::camera_at and scene::lights_at, at any of the frames; ErrorClass::object too for an object whose vertices are
 /// float32.
 Result<LoadedScene> load_scene(const scene::Scene& scene, const RenderSettings& settings,
-                               std::span<const double> frames = kStill, Extent extent = Extent::met);
+                               std::span<const double> frames = kStill, Extent extent = Extent::met,
+                               Checking checking = Checking::done);
 
 /// What has moved from one frame to another: these instances, and of the hierarchy whatever is above them, or all of
 /// it.

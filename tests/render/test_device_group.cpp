@@ -65,12 +65,14 @@ struct World {
   render::RenderSettings settings = all_aovs();
   render::LoadedScene scene;
 
-  explicit World(uint32_t size) {
+  explicit World(uint32_t size) : scene(load(size)) {}
+
+  render::LoadedScene load(uint32_t size) {
     auto s = scene_of({unit_cube().write(folder.file("cube.nkd"))}, {part(0, moved({}))}, size);
     s.lights.push_back({});
     s.lights[0].position = {3, 4, 5};
     settings.preview = true;
-    scene = *render::load_scene(s, settings);
+    return *render::load_scene(s, settings);
   }
 };
 

@@ -39,6 +39,41 @@ TEST_CASE("load: an object that no part places is not opened") {
   CHECK(load_scene(s, {}).error().error_class == ErrorClass::object);
 }
 
+TEST_CASE("load: geometry is found sound, or not, while a device is opened") {
+  const TempFolder folder;
+  const std::string cube = unit_cube().write(folder.file("cube.nkd"));
+  std::vector<std::string> files(20, cube);
+  std::vector<scene::Part> parts;
+  for (uint32_t i = 0; i < files.size(); ++i) parts.push_back(part(i, moved({2.0 * i, 0, 0})));
+  const auto s = scene_of(files, parts);
+  const auto begun = [](const scene::Scene& placed) {
+    return load_scene(placed, {}, render::kStill, render::Extent::all, render::Checking::going_on);
+  };
+  const auto opened = [](const render::LoadedScene& loaded) {
+    return render::DeviceGroup::open({render::cpu_device()}, false, loaded, {});
+  };
+  const auto loaded = begun(s);
+  REQUIRE(loaded);
+  CHECK(bool(opened(*loaded)));
+  CHECK(loaded->checks.all_sound());
+
+  std::string bytes = read_bytes(cube);
+  const Contents contents = unit_cube();
+  bytes_of(bytes, contents.vertices)[0] ^= 1;
+  auto broken = s;
+  for (const size_t i : {7, 12}) broken.objects[i].file = folder.write("broken" + std::to_string(i) + ".nkd", bytes);
+  const auto unsound = begun(broken);
+  REQUIRE(unsound);
+  const auto refused = opened(*unsound);
+  REQUIRE_FALSE(refused);
+  const auto at_once = load_scene(broken, {}, render::kStill, render::Extent::all);
+  REQUIRE_FALSE(at_once);
+  CHECK(refused.error().error_class == ErrorClass::object);
+  CHECK(refused.error().line() == at_once.error().line());
+  CHECK(refused.error().where == broken.objects[7].file);
+  CHECK(bool(begun(broken)));  // and never asked about
+}
+
 TEST_CASE("load: black lights are left out") {
   const TempFolder folder;
   auto s = scene_of({unit_cube().write(folder.file("cube.nkd"))}, {part(0, moved({}))});

@@ -152,9 +152,10 @@ Result<void> FrameLoop::stand_at(int frame, const std::vector<int>& frames,
     times_.load = timer.seconds();
     return followed;
   }
-  auto loaded = render::load_scene(scene_, settings_, std::vector<double>(frames.begin(), frames.end()));
+  auto loaded = render::load_scene(scene_, settings_, std::vector<double>(frames.begin(), frames.end()),
+                                   render::Extent::met, render::Checking::going_on);
   if (!loaded) return loaded.error();
-  loaded_ = std::move(*loaded);
+  loaded_.emplace(std::move(*loaded));
   times_.load = timer.seconds();
   auto group = render::DeviceGroup::open(devices, o_.device == "auto", *loaded_, settings_);
   if (!group) return group.error();

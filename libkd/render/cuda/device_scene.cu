@@ -65,6 +65,7 @@ Result<void> DeviceScene::fill(const LoadedScene& scene, cudaStream_t stream) {
   for (size_t i = 0; i < scene.objects.size(); ++i) {
     const nkd::Attributes& a = scene.objects[i].attributes;
     const ShadedObjectView& v = object_views_[i];
+    if (auto sound = scene.checks.sound(i); !sound) return sound;  // meanwhile the next ones are looked at
     KD_CUDA_TRY(fill_object(objects_[i], staging, scene.objects[i].file.geometry(), stream), action);
     KD_CUDA_TRY(fill_piece(v.source_primitives, a.source_primitives, stream), action);
     KD_CUDA_TRY(fill_piece(v.normals, a.normals, stream), action);
