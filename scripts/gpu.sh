@@ -49,9 +49,10 @@ done
 meshes="sibenik sponza bunny dragon_res2 staircase living_room"
 echo "== traversal, 1920 x 1080, and what exactness costs: the same kernel with the usual float tests; compact triangles"
 for mesh in $meshes; do
+  $bin/kdbench trace dist/objects/$mesh.nkd --camera dist/shared/data/cameras/$mesh.txt --device cuda --repeat 20 --json "$out/trace-$mesh.json"
   for test in exact moller-trumbore woop; do
     $bin/kdbench trace dist/objects/$mesh.nkd --camera dist/shared/data/cameras/$mesh.txt --device cuda --repeat 20 --triangle-test $test \
-      --json "$out/trace-$mesh-$test.json"
+      --scattered none --json "$out/trace-$mesh-$test.json"
   done
   $bin/kdbench trace dist/objects/$mesh.nkd --camera dist/shared/data/cameras/$mesh.txt --device cuda --repeat 20 --layout compact \
     --json "$out/trace-$mesh-compact.json"
