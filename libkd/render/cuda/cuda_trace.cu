@@ -19,6 +19,16 @@ __global__ void __launch_bounds__(kBlock, kTraceBlocks)
   hits[i] = trace_ray<mode, Test, layout>(view, load(rays + i), counter);
 }
 
+/// As many blocks as the device holds at once, each warp taking rays until there are none. *taken is 0 before.
+template <RayMode mode, TriangleLayout layout>
+__global__ void __launch_bounds__(kBlock, kWarpTraceBlocks)
+    warp_trace_kernel(const __grid_constant__ TraceView view, const RayRecord* records, uint32_t count, uint32_t* taken,
+                      HitRecord* hits) {
+  __shared__ WarpRays rays[kBlock / kLanes];
+  detail::StackEntry stack[kMaxDepth];
+  WarpTrace<mode, layout>(view, rays[threadIdx.x / kLanes], stack).run(records, count, taken, hits);
+}
+
 /// How many blocks of warp_trace_kernel the device holds at once. No more shared memory is set aside than they take:
 /// the rest is cache, and scattered rays want it.
 template <class Kernel>

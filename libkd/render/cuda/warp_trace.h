@@ -9,22 +9,25 @@
 //   - a lane that comes to a leaf puts it aside and goes on, up to kAside times, while others have found none yet
 //     (ibid., speculative traversal);
 //   - the triangles of all leaves put aside are dealt out to the lanes, whosever rays they are for; those that float32
-//     cannot reject are queued, and decided in double by as many lanes as possible.
+//     cannot reject are queued, and decided in double by as many lanes as possible;
+//   - when no rays are left to take, idle lanes take over cells from the stacks of those that still have some, so that
+//     several lanes work for one ray.
 // So what a ray is tested with is in shared memory, 72 bytes, and a lane's registers hold only its way down the tree.
 // Some cells are visited in vain, and in another order. That changes no hit: the answer depends on no order of visits
 // (core/traversal.h).
 #pragma once
 
-#include "render/cuda/cuda.h"
+#include <cstddef>
+
+#include "render/cuda/warp.h"
 #include "render/trace.h"
 
 namespace kd::render {
 
-constexpr uint32_t kLanes = 32;
-constexpr unsigned kAllLanes = 0xffffffffu;
+using warp::kLanes;
 
 // All chosen by measurement on an H100; each gains or loses a few percent when changed by half.
-constexpr unsigned kWarpTraceBlocks = 9;  // of kBlock threads a multiprocessor: 56 registers a thread
+constexpr unsigned kWarpTraceBlocks = 9;  // of 128 threads a multiprocessor: 56 registers a thread
 constexpr uint32_t kAside = 2;            // leaves that a lane puts aside
 constexpr int kStepsAtOnce = 4;           // between two looks at what the other lanes have found
 constexpr int kStragglers = 4;            // lanes without a leaf that the others do not wait for
@@ -36,6 +39,9 @@ constexpr uint32_t kEnoughIdle = 14;      // lanes that begin rays together
 struct WarpRays {
   struct Plane {
     float origin, inverse;  // of the ray, along an axis
+  };
+  struct Slopes {
+    float x, y;
   };
   struct Leaf {
     uint32_t first, count;  // references
@@ -53,7 +59,7 @@ struct WarpRays {
     Dealt dealt[kAside * kLanes];
   };
   Plane y[kLanes];
-  float2 slopes[kLanes];
+  Slopes slopes[kLanes];
   double nearest[kLanes];  // of the hits so far; the ray's s_max before
   Plane z[kLanes];
   uint32_t best[kLanes];  // the triangle of that hit, or kNoHit; above it the ray's axis and its direction's sign
@@ -65,7 +71,7 @@ struct WarpRays {
   static constexpr uint32_t kNoHit = (1u << kSignBit) - 1;
   static constexpr uint32_t kCertain = 1u << 31;  // in Undecided::ray
 
-  __device__ void keep(uint32_t column, const LatticeRay& ray) {
+  KD_WARP void keep(uint32_t column, const LatticeRay& ray) {
     const auto shear = detail::shear_along(ray, ray.axis);
     x[column] = {ray.origin.x, ray.inverse.x};
     y[column] = {ray.origin.y, ray.inverse.y};
@@ -77,17 +83,17 @@ struct WarpRays {
     best[column] = static_cast<uint32_t>(ray.axis) << kAxisBit | backwards << kSignBit | kNoHit;
   }
 
-  __device__ ExactTest test(uint32_t column) const {
+  KD_WARP ExactTest test(uint32_t column) const {
     const uint32_t kept = best[column], axis = kept >> kAxisBit;
-    const float2 slope = slopes[column];
+    const Slopes slope = slopes[column];
     const Vec3f origin{x[column].origin, y[column].origin, z[column].origin};
     return {{origin, slope.x, slope.y, axis == 0, axis == 1}, (kept >> kSignBit & 1) != 0 ? -1.0f : 1.0f};
   }
 
-  __device__ uint32_t hit(uint32_t column) const { return best[column] & kNoHit; }
+  KD_WARP uint32_t hit(uint32_t column) const { return best[column] & kNoHit; }
 
   /// Makes it the hit if it is nearer, or as near and of the lower index. One lane at a time for each ray.
-  __device__ void meet(uint32_t column, uint32_t triangle, double s) {
+  KD_WARP void meet(uint32_t column, uint32_t triangle, double s) {
     const uint32_t kept = best[column];
     if (s > nearest[column] || (s == nearest[column] && triangle > (kept & kNoHit))) return;
     nearest[column] = s;
@@ -95,65 +101,90 @@ struct WarpRays {
   }
 };
 static_assert(offsetof(WarpRays, z) == 2 * offsetof(WarpRays, y));
-static_assert(kWarpTraceBlocks * (kBlock / kLanes * sizeof(WarpRays) + 1024) <= 100 * 1024);
+static_assert(kWarpTraceBlocks * (4 * sizeof(WarpRays) + 1024) <= 100 * 1024);
 
 /// One warp's work. Every function but those of a single ray is for all of its lanes at once.
 template <RayMode mode, TriangleLayout layout>
 class WarpTrace {
  public:
   /// `stack`: kMaxDepth entries of the lane's own.
-  __device__ WarpTrace(const TraceView& view, WarpRays& rays, detail::StackEntry* stack)
+  KD_WARP WarpTrace(const TraceView& view, WarpRays& rays, detail::StackEntry* stack)
       : view_(view), rays_(rays), stack_(stack) {
-    // An address of its own for the planes: left to itself the compiler computes it anew in every step.
-    planes_ = static_cast<uint32_t>(__cvta_generic_to_shared(&rays.x[lane()]));
-    asm volatile("" : "+r"(planes_));
+    take_column(warp::lane());
   }
 
   /// Traces rays until there are none, taking them by adding to *taken, which all warps share.
-  __device__ void run(const RayRecord* records, uint32_t count, uint32_t* taken, HitRecord* hits) {
-    bool more = true;
+  KD_WARP void run(const RayRecord* records, uint32_t count, uint32_t* taken, HitRecord* hits) {
     record_ = count;
-    while (true) {
-      const unsigned live = __ballot_sync(kAllLanes, active_);
-      const uint32_t idle = kLanes - __popc(live);
-      if (live != 0 && (!more || idle < kEnoughIdle)) {
-        find_leaves(live);
+    for (bool more = true; more;) {
+      const unsigned idle = warp::ballot(!active_);
+      const uint32_t wanted = warp::count(idle);
+      if (wanted < kEnoughIdle) {
+        find_leaves(~idle);
         test_leaves();
         continue;
       }
       if (!active_ && record_ < count) finish(records, hits);
-      if (!more) return;
       uint32_t first = 0;
-      if (lane() == 0) first = atomicAdd(taken, idle);
-      first = __shfl_sync(kAllLanes, first, 0);
-      more = first + idle < count;
+      if (warp::lane() == 0) first = warp::add(taken, wanted);
+      first = warp::of_lane(first, 0);
+      more = first + wanted < count;
       if (!active_) {
-        record_ = first + __popc(~live & before());
+        record_ = first + warp::count(idle & warp::before());
         if (record_ < count) begin(load(records + record_));
       }
-      __syncwarp();
+      warp::sync();
     }
+    while (const unsigned live = warp::ballot(active_)) {
+      share_stacks(live);
+      find_leaves(warp::ballot(active_));
+      test_leaves();
+    }
+    if (record_ < count) finish(records, hits);
   }
 
  private:
-  __device__ static uint32_t lane() { return threadIdx.x % kLanes; }
-  __device__ static unsigned or_of_lanes(unsigned bits) {
-#if __CUDA_ARCH__ >= 800
-    return __reduce_or_sync(kAllLanes, bits);
-#else
-    for (uint32_t distance = 1; distance < kLanes; distance *= 2) bits |= __shfl_xor_sync(kAllLanes, bits, distance);
-    return bits;
-#endif
-  }
-  /// The lanes before this one.
-  __device__ static unsigned before() { return (1u << lane()) - 1; }
+  KD_WARP void take_column(uint32_t column) { planes_ = warp::shared_address(&rays_.x[column]); }
 
-  __device__ void begin(const RayRecord& r) {
+  /// The column of the ray that the lane works for.
+  KD_WARP uint32_t column() const {
+    return warp::distance(planes_, rays_.x) / static_cast<uint32_t>(sizeof(WarpRays::Plane));
+  }
+
+  /// Idle lanes take over cells that others have on top of their stacks.
+  KD_WARP void share_stacks(unsigned live) {
+    const bool gives = active_ && depth_ > 0;
+    const unsigned givers = warp::ballot(gives);
+    const uint32_t shared = min_of(static_cast<uint32_t>(warp::count(givers)), kLanes - warp::count(live));
+    if (shared == 0) return;
+    const uint32_t rank = warp::count((active_ ? givers : ~live) & warp::before());
+    detail::StackEntry cell{};
+    const float begins = way_.s_resume;
+    if (gives && rank < shared) {
+      --depth_;
+      cell = stack_[depth_];
+      way_.s_resume = cell.s_exit;
+    }
+    const bool takes = !active_ && rank < shared;
+    const uint32_t giver = takes ? warp::nth(givers, rank) : warp::lane();
+    const uint32_t node = warp::of_lane(cell.node, giver), theirs = warp::of_lane(column(), giver);
+    const float s_exit = warp::of_lane(cell.s_exit, giver), s_entry = warp::of_lane(begins, giver);
+    if (!takes) return;
+    take_column(theirs);
+    s_best_ = rounded_up(rays_.nearest[theirs]);
+    way_ = {s_entry * detail::kResumeMargin, s_exit, s_exit};
+    depth_ = 0;
+    active_ = s_best_ >= way_.s_entry;
+    node_ = load(view_.object.nodes + node);
+  }
+
+  KD_WARP void begin(const RayRecord& r) {
+    take_column(warp::lane());
     LatticeRay ray;
     active_ = lattice_ray<true>(view_.to_lattice, view_.object.bits, r, ray);
-    rays_.best[lane()] = WarpRays::kNoHit;
+    rays_.best[warp::lane()] = WarpRays::kNoHit;
     if (!active_) return;
-    rays_.keep(lane(), ray);
+    rays_.keep(warp::lane(), ray);
     t_base_ = ray.t_base;
     t_scale_ = ray.t_scale;
     s_best_ = ray.s_max;
@@ -163,8 +194,8 @@ class WarpTrace {
     node_ = load(view_.object.nodes);
   }
 
-  __device__ void finish(const RayRecord* records, HitRecord* hits) const {
-    const uint32_t triangle = rays_.hit(lane());
+  KD_WARP void finish(const RayRecord* records, HitRecord* hits) const {
+    const uint32_t triangle = rays_.hit(warp::lane());
     if (triangle == WarpRays::kNoHit) {
       hits[record_] = miss_of(load(records + record_));
       return;
@@ -172,17 +203,17 @@ class WarpTrace {
     LatticeRay ray;
     ray.t_base = t_base_;
     ray.t_scale = t_scale_;
-    const TriangleHit hit = rays_.test(lane()).locate(view_.object.triangle<layout>(triangle));
+    const TriangleHit hit = rays_.test(warp::lane()).locate(view_.object.triangle<layout>(triangle));
     hits[record_] = record_of(view_, ray, triangle, hit);
   }
 
   /// Goes on until all but a few of the `live` lanes have put a leaf aside or come to an end.
-  __device__ void find_leaves(unsigned live) {
+  KD_WARP void find_leaves(unsigned live) {
     aside_ = 0;
     unsigned without;
     do {
       if (active_) {
-#pragma unroll
+        KD_UNROLL
         for (int i = 0; i < kStepsAtOnce; ++i) {
           if (is_leaf(node_)) break;
           step();
@@ -191,17 +222,17 @@ class WarpTrace {
         // An empty leaf is passed even where there is no room for others: its cell may be none at all.
         if (is_leaf(node_) && (references == 0 || aside_ < kAside)) {
           if (references != 0) {
-            rays_.leaves[aside_ * kLanes + lane()] = {first_reference(node_), references};
+            rays_.leaves[aside_ * kLanes + warp::lane()] = {first_reference(node_), references};
             ++aside_;
           }
           take_from_stack();
         }
       }
-      without = __ballot_sync(kAllLanes, active_ && aside_ == 0);
-    } while (__popc(without) > kStragglers || without == live);
+      without = warp::ballot(active_ && aside_ == 0);
+    } while (warp::count(without) > kStragglers || without == live);
   }
 
-  __device__ void step() {
+  KD_WARP void step() {
     const WarpRays::Plane plane = plane_along(split_axis(node_));
     const uint32_t next = detail::step_down(node_, plane.origin, plane.inverse, way_, [&](uint32_t far) {
       stack_[depth_] = {far, way_.s_exit};
@@ -210,15 +241,14 @@ class WarpTrace {
     node_ = load(view_.object.nodes + next);
   }
 
-  __device__ WarpRays::Plane plane_along(int axis) const {
+  KD_WARP WarpRays::Plane plane_along(int axis) const {
     WarpRays::Plane plane;
-    asm volatile("ld.shared.v2.f32 {%0, %1}, [%2];"
-                 : "=f"(plane.origin), "=f"(plane.inverse)
-                 : "r"(planes_ + static_cast<uint32_t>(axis) * static_cast<uint32_t>(offsetof(WarpRays, y))));
+    warp::load_shared(planes_ + static_cast<uint32_t>(axis) * static_cast<uint32_t>(offsetof(WarpRays, y)),
+                      plane.origin, plane.inverse);
     return plane;
   }
 
-  __device__ void take_from_stack() {
+  KD_WARP void take_from_stack() {
     way_.s_entry = way_.s_resume * detail::kResumeMargin;
     active_ = depth_ != 0 && s_best_ >= way_.s_entry;
     if (!active_) return;
@@ -228,26 +258,26 @@ class WarpTrace {
   }
 
   /// Tests the triangles of the leaves put aside, and ends the rays that need not go on.
-  __device__ void test_leaves() {
-    __syncwarp();
-    const unsigned have_a = __ballot_sync(kAllLanes, aside_ > 0), have_b = __ballot_sync(kAllLanes, aside_ > 1);
+  KD_WARP void test_leaves() {
+    warp::sync();
+    const unsigned have_a = warp::ballot(aside_ > 0), have_b = warp::ballot(aside_ > 1);
     static_assert(kAside == 2);
-    const WarpRays::Leaf a = rays_.leaves[lane()], b = rays_.leaves[kLanes + lane()];
+    const WarpRays::Leaf a = rays_.leaves[warp::lane()], b = rays_.leaves[kLanes + warp::lane()];
     const uint32_t in_a = aside_ > 0 ? a.count : 0, in_b = aside_ > 1 ? b.count : 0;
 
     // Pairs of a ray and a triangle, numbered from lane to lane.
     uint32_t end = in_a + in_b;
-#pragma unroll
+    KD_UNROLL
     for (uint32_t distance = 1; distance < kLanes; distance *= 2) {
-      const uint32_t lower = __shfl_up_sync(kAllLanes, end, distance);
-      if (lane() >= distance) end += lower;
+      const uint32_t lower = warp::of_lane_below(end, distance);
+      if (warp::lane() >= distance) end += lower;
     }
-    const uint32_t pairs = __shfl_sync(kAllLanes, end, kLanes - 1), pair_b = end - in_b, pair_a = pair_b - in_a;
-    const uint32_t at = __popc(have_a & before()) + __popc(have_b & before());
-    __syncwarp();
-    if (aside_ > 0) rays_.dealt[at] = {lane(), a.first - pair_a};
-    if (aside_ > 1) rays_.dealt[at + 1] = {lane(), b.first - pair_b};
-    __syncwarp();
+    const uint32_t pairs = warp::of_lane(end, kLanes - 1), pair_b = end - in_b, pair_a = pair_b - in_a;
+    const uint32_t at = warp::count(have_a & warp::before()) + warp::count(have_b & warp::before());
+    warp::sync();
+    if (aside_ > 0) rays_.dealt[at] = {column(), a.first - pair_a};
+    if (aside_ > 1) rays_.dealt[at + 1] = {column(), b.first - pair_b};
+    warp::sync();
 
     uint32_t leaves = 0, queued = 0;
     for (uint32_t base = 0;; base += kLanes) {
@@ -255,46 +285,45 @@ class WarpTrace {
       bool undecided = false;
       if (base < pairs) {
         // Which of these pairs begin a leaf, a bit each.
-        const auto begins = [&](uint32_t pair, uint32_t in) {
-          return in != 0 && pair - base < kLanes ? 1u << (pair - base) : 0;
+        const auto begins = [&](uint32_t first, uint32_t in) {
+          return in != 0 && first - base < kLanes ? 1u << (first - base) : 0;
         };
-        const unsigned beginning = or_of_lanes(begins(pair_a, in_a) | begins(pair_b, in_b));
-        if (base + lane() < pairs) {
-          const WarpRays::Dealt leaf = rays_.dealt[leaves + __popc(beginning & (before() * 2 + 1)) - 1];
-          pair = {leaf.ray, view_.object.references[leaf.reference + base + lane()]};
+        const unsigned beginning = warp::or_of_all(begins(pair_a, in_a) | begins(pair_b, in_b));
+        if (base + warp::lane() < pairs) {
+          const WarpRays::Dealt leaf = rays_.dealt[leaves + warp::count(beginning & (warp::before() * 2 + 1)) - 1];
+          pair = {leaf.ray, view_.object.references[leaf.reference + base + warp::lane()]};
           const auto decision = rays_.test(pair.ray).filter(view_.object.triangle<layout>(pair.triangle));
           undecided = !(decision.certain && decision.apart);
           if (decision.certain) pair.ray |= WarpRays::kCertain;
         }
-        leaves += __popc(beginning);
+        leaves += warp::count(beginning);
       }
-      const unsigned left = __ballot_sync(kAllLanes, undecided);
-      if (base >= pairs || queued + __popc(left) > kLanes) {
+      const unsigned left = warp::ballot(undecided);
+      if (base >= pairs || queued + warp::count(left) > kLanes) {
         decide(queued);
         queued = 0;
       }
       if (base >= pairs) break;
-      if (undecided) rays_.queue[queued + __popc(left & before())] = pair;
-      queued += __popc(left);
+      if (undecided) rays_.queue[queued + warp::count(left & warp::before())] = pair;
+      queued += warp::count(left);
     }
 
-    if (aside_ == 0) return;
     if constexpr (mode == RayMode::any) {
-      if (rays_.hit(lane()) != WarpRays::kNoHit) active_ = false;
+      if (rays_.hit(column()) != WarpRays::kNoHit) active_ = false;
     } else {
-      s_best_ = rounded_up(rays_.nearest[lane()]);
+      s_best_ = rounded_up(rays_.nearest[column()]);
       if (s_best_ < way_.s_entry * detail::kResumeMargin) active_ = false;
     }
   }
 
   /// Decides what is in the queue, in double.
-  __device__ void decide(uint32_t queued) {
-    __syncwarp();
+  KD_WARP void decide(uint32_t queued) {
+    warp::sync();
     bool hit = false;
     double s = 0;
     uint32_t ray = 0, triangle = 0;
-    if (lane() < queued) {
-      const WarpRays::Undecided pair = rays_.queue[lane()];
+    if (warp::lane() < queued) {
+      const WarpRays::Undecided pair = rays_.queue[warp::lane()];
       ray = pair.ray % kLanes;
       triangle = pair.triangle;
       hit = rays_.test(ray).template meets_in_double<mode>(view_.object.triangle<layout>(triangle),
@@ -302,10 +331,10 @@ class WarpTrace {
             s >= rays_.s_min[ray] && s <= rays_.nearest[ray];
     }
     // Of several lanes with hits of one ray, one after the other.
-    for (unsigned hits; (hits = __ballot_sync(kAllLanes, hit)) != 0; __syncwarp()) {
+    for (unsigned hits; (hits = warp::ballot(hit)) != 0; warp::sync()) {
       if (!hit) continue;
-      const unsigned same = __match_any_sync(hits, ray);
-      if ((same & before()) != 0) continue;
+      const unsigned same = warp::same_among(hits, ray);
+      if ((same & warp::before()) != 0) continue;
       rays_.meet(ray, triangle, s);
       hit = false;
     }
@@ -322,18 +351,8 @@ class WarpTrace {
   Node node_;
   detail::Way way_;
   float s_best_;
-  int depth_;
+  int depth_ = 0;
   uint32_t aside_;  // leaves put aside
 };
-
-/// As many blocks as the device holds at once, each warp taking rays until there are none. *taken is 0 before.
-template <RayMode mode, TriangleLayout layout>
-__global__ void __launch_bounds__(kBlock, kWarpTraceBlocks)
-    warp_trace_kernel(const __grid_constant__ TraceView view, const RayRecord* records, uint32_t count, uint32_t* taken,
-                      HitRecord* hits) {
-  __shared__ WarpRays rays[kBlock / kLanes];
-  detail::StackEntry stack[kMaxDepth];
-  WarpTrace<mode, layout>(view, rays[threadIdx.x / kLanes], stack).run(records, count, taken, hits);
-}
 
 }  // namespace kd::render

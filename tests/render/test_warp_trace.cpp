@@ -1,0 +1,75 @@
+// Rays whose work a warp's lanes share, without a GPU: they meet what each of them meets alone, to the bit.
+#include <cstring>
+
+#include <doctest/doctest.h>
+
+#include "../core/shapes.h"
+#include "warp_emulation.h"
+// After what it is to call.
+#include "render/cuda/warp_trace.h"
+
+using namespace kd;
+using namespace kd::test;
+using namespace kd::render;
+
+namespace {
+
+std::vector<RayRecord> rays_at(const Traced& traced, size_t count, uint64_t seed) {
+  Random random(seed);
+  const auto f = [](double v) { return static_cast<float>(v); };
+  std::vector<RayRecord> rays;
+  for (size_t i = 0; i < count; ++i) {
+    const PlainRay r = adversarial_ray(traced.shape, traced.lattice.bits, random);
+    rays.push_back({f(r.origin.x), f(r.origin.y), f(r.origin.z), 0, f(r.direction.x), f(r.direction.y),
+                    f(r.direction.z), random.chance(0.125) ? 0.9f : 1e30f});
+  }
+  return rays;
+}
+
+/// How many rays fare otherwise than alone; adds their hits to `met`.
+template <RayMode mode>
+size_t differing(const Traced& traced, std::span<const RayRecord> rays, size_t& met) {
+  const TraceView view{traced.view(), invert(traced.lattice.frame()), nullptr};
+  constexpr HitRecord kUntouched{-7, -7, -7, -7};
+  std::vector<HitRecord> hits(rays.size(), kUntouched);
+  const auto shared = std::make_unique<WarpRays>();
+  std::memset(static_cast<void*>(shared.get()), 0xcd, sizeof *shared);  // as a block finds it: anything
+  uint32_t taken = 0;
+  WarpEmulation(shared.get()).run([&] {
+    detail::StackEntry stack[kMaxDepth];
+    WarpTrace<mode, TriangleLayout::expanded> lane(view, *shared, stack);
+    lane.run(rays.data(), static_cast<uint32_t>(rays.size()), &taken, hits.data());
+  });
+  NoCounter counter;
+  size_t wrong = 0;
+  for (size_t i = 0; i < rays.size(); ++i) {
+    const HitRecord alone = trace_ray<mode, ExactTest, TriangleLayout::expanded>(view, rays[i], counter);
+    met += alone.primitive >= 0;
+    wrong += mode == RayMode::any ? (alone.primitive < 0) != (hits[i].primitive < 0) || hits[i].primitive < -1
+                                  : std::memcmp(&alone, &hits[i], sizeof alone) != 0;
+  }
+  return wrong;
+}
+
+}  // namespace
+
+TEST_CASE("warp trace: rays meet what they meet alone") {
+  size_t rays = 0, met = 0;
+  for (const int bits : {10, 21, 24}) {
+    const uint32_t top = lattice_max(bits);
+    for (const Shape& shape :
+         {soup_shape(bits, 40, Soup::needles, 1), soup_shape(bits, 700, Soup::mixed, 2),
+          soup_shape(bits, 2000, Soup::small, 3), rooms_shape(bits, 6, 4), sphere_shape(bits, 3), fan_shape(bits, 100),
+          stacked_boxes_shape(bits, 5), box_shape({0, 0, 0}, {top, top, top})}) {
+      const Traced traced(shape, bits);
+      // Fewer than lanes, as many, a few more, which share stacks; many, of which lanes take others.
+      for (const size_t count : {1, 5, 32, 33, 77, 600}) {
+        const std::vector<RayRecord> some = rays_at(traced, count, 100 * static_cast<uint64_t>(bits) + count);
+        CHECK(differing<RayMode::closest>(traced, some, met) == 0);
+        CHECK(differing<RayMode::any>(traced, some, met) == 0);
+        rays += 2 * count;
+      }
+    }
+  }
+  CHECK(met > rays / 2);
+}
