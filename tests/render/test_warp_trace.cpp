@@ -26,18 +26,19 @@ std::vector<RayRecord> rays_at(const Traced& traced, size_t count, uint64_t seed
   return rays;
 }
 
-/// How many rays fare otherwise than alone; adds their hits to `met`.
+/// How many rays fare otherwise than alone, traced by a block of so many warps; adds their hits to `met`.
 template <RayMode mode>
-size_t differing(const Traced& traced, std::span<const RayRecord> rays, size_t& met) {
+size_t differing(const Traced& traced, std::span<const RayRecord> rays, uint32_t warps, size_t& met) {
   const TraceView view{traced.view(), invert(traced.lattice.frame()), nullptr};
   constexpr HitRecord kUntouched{-7, -7, -7, -7};
   std::vector<HitRecord> hits(rays.size(), kUntouched);
-  const auto shared = std::make_unique<WarpRays>();
-  std::memset(static_cast<void*>(shared.get()), 0xcd, sizeof *shared);  // as a block finds it: anything
+  const auto shared = std::make_unique<WarpRays[]>(warps);
+  std::memset(static_cast<void*>(shared.get()), 0xcd, warps * sizeof(WarpRays));  // as a block finds it: anything
+  volatile bool none_left = false;
   uint32_t taken = 0;
-  WarpEmulation(shared.get()).run([&] {
+  WarpEmulation(warps, shared.get()).run([&](uint32_t warp) {
     detail::StackEntry stack[kMaxDepth];
-    WarpTrace<mode, TriangleLayout::expanded> lane(view, *shared, stack);
+    WarpTrace<mode, TriangleLayout::expanded> lane(view, shared[warp], stack, none_left);
     lane.run(rays.data(), static_cast<uint32_t>(rays.size()), &taken, hits.data());
   });
   NoCounter counter;
@@ -63,10 +64,14 @@ TEST_CASE("warp trace: rays meet what they meet alone") {
           stacked_boxes_shape(bits, 5), box_shape({0, 0, 0}, {top, top, top})}) {
       const Traced traced(shape, bits);
       // Fewer than lanes, as many, a few more, which share stacks; many, of which lanes take others.
-      for (const size_t count : {1, 5, 32, 33, 77, 600}) {
+      constexpr struct {
+        size_t count;
+        uint32_t warps;
+      } kRays[] = {{1, 1}, {5, 1}, {32, 1}, {33, 1}, {77, 1}, {400, 1}, {70, 2}, {200, 3}};
+      for (const auto& [count, warps] : kRays) {
         const std::vector<RayRecord> some = rays_at(traced, count, 100 * static_cast<uint64_t>(bits) + count);
-        CHECK(differing<RayMode::closest>(traced, some, met) == 0);
-        CHECK(differing<RayMode::any>(traced, some, met) == 0);
+        CHECK(differing<RayMode::closest>(traced, some, warps, met) == 0);
+        CHECK(differing<RayMode::any>(traced, some, warps, met) == 0);
         rays += 2 * count;
       }
     }

@@ -1,20 +1,21 @@
 #include "warp_emulation.h"
 
-#include <bit>
 #include <cstring>
 
 namespace kd::test {
 
+using render::warp::kLanes;
+
 void WarpEmulation::enter() {
-  WarpEmulation& warp = *instance;
-  warp.body_();
-  Lane& lane = warp.lanes_[warp.lane_];
+  WarpEmulation& block = *instance;
+  block.body_(static_cast<uint32_t>(block.running_ / kLanes));
+  Lane& lane = block.lanes_[block.running_];
   lane.ended = true;
-  swapcontext(&lane.context, &warp.scheduler_);
+  swapcontext(&lane.context, &block.scheduler_);
 }
 
 uint64_t WarpEmulation::meet(Together what, unsigned lanes, uint64_t value, uint32_t which) {
-  Lane& lane = lanes_[lane_];
+  Lane& lane = lanes_[running_];
   lane.waits = true;
   lane.what = what;
   lane.lanes = lanes;
@@ -24,7 +25,7 @@ uint64_t WarpEmulation::meet(Together what, unsigned lanes, uint64_t value, uint
   return lane.told;
 }
 
-void WarpEmulation::run(std::function<void()> lane) {
+void WarpEmulation::run(std::function<void(uint32_t)> lane) {
   constexpr size_t kStack = 1 << 18;
   body_ = std::move(lane);
   for (Lane& l : lanes_) {
@@ -44,35 +45,37 @@ void WarpEmulation::run(std::function<void()> lane) {
 }
 
 void WarpEmulation::run_lanes() {
-  first_ = first_ * 5 + 7;
-  for (uint32_t i = 0; i < lanes_.size(); ++i) {
-    lane_ = (first_ + i) % render::warp::kLanes;
-    Lane& lane = lanes_[lane_];
+  turn_ = turn_ * 5 + 7;
+  for (size_t i = 0; i < lanes_.size(); ++i) {
+    running_ = (turn_ + i) % lanes_.size();
+    Lane& lane = lanes_[running_];
     if (!lane.ended && !lane.waits) swapcontext(&scheduler_, &lane.context);
   }
 }
 
-bool WarpEmulation::have_met(unsigned lanes, Together what) const {
-  for (uint32_t i = 0; i < lanes_.size(); ++i) {
-    const Lane& lane = lanes_[i];
+bool WarpEmulation::have_met(size_t first, unsigned lanes, Together what) const {
+  for (uint32_t i = 0; i < kLanes; ++i) {
+    const Lane& lane = lanes_[first + i];
     if ((lanes >> i & 1) != 0 && !(lane.waits && lane.lanes == lanes && lane.what == what)) return false;
   }
   return true;
 }
 
 bool WarpEmulation::let_go() {
-  for (const Lane& lane : lanes_) {
-    if (!lane.waits || !have_met(lane.lanes, lane.what)) continue;
-    tell(lane.lanes);
+  for (size_t i = 0; i < lanes_.size(); ++i) {
+    const Lane& lane = lanes_[i];
+    const size_t first = i / kLanes * kLanes;
+    if (!lane.waits || !have_met(first, lane.lanes, lane.what)) continue;
+    tell(first, lane.lanes);
     return true;
   }
   return false;
 }
 
-void WarpEmulation::tell(unsigned lanes) {
+void WarpEmulation::tell(size_t first, unsigned lanes) {
   const auto for_each = [&](const auto& visit) {
-    for (uint32_t i = 0; i < lanes_.size(); ++i) {
-      if ((lanes >> i & 1) != 0) visit(i, lanes_[i]);
+    for (uint32_t i = 0; i < kLanes; ++i) {
+      if ((lanes >> i & 1) != 0) visit(i, lanes_[first + i]);
     }
   };
   unsigned ballot = 0, bits = 0;
@@ -93,10 +96,10 @@ void WarpEmulation::tell(unsigned lanes) {
         lane.told = bits;
         break;
       case Together::of_lane:
-        lane.told = lanes_[lane.which].value;
+        lane.told = lanes_[first + lane.which].value;
         break;
       case Together::of_lane_below:
-        lane.told = i >= lane.which ? lanes_[i - lane.which].value : lane.value;
+        lane.told = i >= lane.which ? lanes_[first + i - lane.which].value : lane.value;
         break;
       case Together::same:
         lane.told = same;

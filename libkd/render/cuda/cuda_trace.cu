@@ -25,8 +25,11 @@ __global__ void __launch_bounds__(kBlock, kWarpTraceBlocks)
     warp_trace_kernel(const __grid_constant__ TraceView view, const RayRecord* records, uint32_t count, uint32_t* taken,
                       HitRecord* hits) {
   __shared__ WarpRays rays[kBlock / kLanes];
+  __shared__ volatile bool none_left;
+  if (threadIdx.x == 0) none_left = false;
+  __syncthreads();
   detail::StackEntry stack[kMaxDepth];
-  WarpTrace<mode, layout>(view, rays[threadIdx.x / kLanes], stack).run(records, count, taken, hits);
+  WarpTrace<mode, layout>(view, rays[threadIdx.x / kLanes], stack, none_left).run(records, count, taken, hits);
 }
 
 /// How many blocks of warp_trace_kernel the device holds at once. No more shared memory is set aside than they take:

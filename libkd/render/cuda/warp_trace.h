@@ -12,7 +12,7 @@
 //     cannot reject are queued, and decided in double by as many lanes as possible;
 //   - when no rays are left to take, idle lanes take over cells from the stacks of those that still have some, so that
 //     several lanes work for one ray.
-// So what a ray is tested with is in shared memory, 72 bytes, and a lane's registers hold only its way down the tree.
+// So what a ray is tested with is in shared memory, 88 bytes, and a lane's registers hold only its way down the tree.
 // Some cells are visited in vain, and in another order. That changes no hit: the answer depends on no order of visits
 // (core/traversal.h).
 #pragma once
@@ -26,15 +26,16 @@ namespace kd::render {
 
 using warp::kLanes;
 
-// All chosen by measurement on an H100; each gains or loses a few percent when changed by half.
-constexpr unsigned kWarpTraceBlocks = 9;  // of 128 threads a multiprocessor: 56 registers a thread
+// All chosen by measurement on an H100; changed by half, each loses up to a few percent.
+constexpr unsigned kWarpTraceBlocks = 8;  // of 128 threads a multiprocessor: 64 registers a thread
 constexpr uint32_t kAside = 2;            // leaves that a lane puts aside
-constexpr int kStepsAtOnce = 4;           // between two looks at what the other lanes have found
-constexpr int kStragglers = 4;            // lanes without a leaf that the others do not wait for
-constexpr uint32_t kEnoughIdle = 14;      // lanes that begin rays together
+constexpr int kStepsAtOnce = 5;           // between two looks at what the other lanes have found
+constexpr int kStragglers = 8;            // lanes without a leaf that the others do not wait for
+constexpr uint32_t kEnoughIdle = 12;      // lanes that begin rays together
+constexpr int kCellsGiven = 4;            // at most, by a lane at once
 
 /// What the rays of a warp are tested with, a column a ray. The three rows of planes lie equally far apart, so that a
-/// node's axis finds its row by one multiplication. All 9 blocks take 90 KiB of a multiprocessor's, so that 100 KiB of
+/// node's axis finds its row by one multiplication. All 8 blocks take 97 KiB of a multiprocessor's, so that 100 KiB of
 /// it are set aside and the L1 cache has the rest: with 132 bounce rays are 1 % slower, with 164 by 6.
 struct WarpRays {
   struct Plane {
@@ -65,6 +66,7 @@ struct WarpRays {
   uint32_t best[kLanes];  // the triangle of that hit, or kNoHit; above it the ray's axis and its direction's sign
   float s_min[kLanes];
   Undecided queue[kLanes];
+  double t_base[kLanes], t_scale[kLanes];  // as in LatticeRay
 
   // A file of 4 GiB, the largest there is, has fewer triangles than 2^29: each takes more than 8 bytes of it.
   static constexpr int kSignBit = 29, kAxisBit = 30;
@@ -78,6 +80,8 @@ struct WarpRays {
     z[column] = {ray.origin.z, ray.inverse.z};
     slopes[column] = {shear.slope_x, shear.slope_y};
     nearest[column] = ray.s_max;
+    t_base[column] = ray.t_base;
+    t_scale[column] = ray.t_scale;
     s_min[column] = ray.s_min;
     const uint32_t backwards = ray.direction[ray.axis] < 0;
     best[column] = static_cast<uint32_t>(ray.axis) << kAxisBit | backwards << kSignBit | kNoHit;
@@ -101,15 +105,16 @@ struct WarpRays {
   }
 };
 static_assert(offsetof(WarpRays, z) == 2 * offsetof(WarpRays, y));
-static_assert(kWarpTraceBlocks * (4 * sizeof(WarpRays) + 1024) <= 100 * 1024);
+static_assert(kWarpTraceBlocks * (4 * sizeof(WarpRays) + 128 + 1024) <= 100 * 1024);
 
 /// One warp's work. Every function but those of a single ray is for all of its lanes at once.
 template <RayMode mode, TriangleLayout layout>
 class WarpTrace {
  public:
-  /// `stack`: kMaxDepth entries of the lane's own.
-  KD_WARP WarpTrace(const TraceView& view, WarpRays& rays, detail::StackEntry* stack)
-      : view_(view), rays_(rays), stack_(stack) {
+  /// `stack`: kMaxDepth entries of the lane's own. `none_left`: no ray is left to take, as one of the block's warps has
+  /// seen; false before.
+  KD_WARP WarpTrace(const TraceView& view, WarpRays& rays, detail::StackEntry* stack, volatile bool& none_left)
+      : view_(view), rays_(rays), stack_(stack), none_left_(none_left) {
     take_column(warp::lane());
   }
 
@@ -117,27 +122,29 @@ class WarpTrace {
   KD_WARP void run(const RayRecord* records, uint32_t count, uint32_t* taken, HitRecord* hits) {
     record_ = count;
     for (bool more = true; more;) {
-      const unsigned idle = warp::ballot(!active_);
+      const unsigned idle = warp::ballot(!has_cell());
       const uint32_t wanted = warp::count(idle);
       if (wanted < kEnoughIdle) {
         find_leaves(~idle);
         test_leaves();
+        more = warp::ballot(none_left_) == 0;
         continue;
       }
-      if (!active_ && record_ < count) finish(records, hits);
+      if (!has_cell() && record_ < count) finish(records, hits);
       uint32_t first = 0;
       if (warp::lane() == 0) first = warp::add(taken, wanted);
       first = warp::of_lane(first, 0);
       more = first + wanted < count;
-      if (!active_) {
+      if (!more) none_left_ = true;
+      if (!has_cell()) {
         record_ = first + warp::count(idle & warp::before());
         if (record_ < count) begin(load(records + record_));
       }
       warp::sync();
     }
-    while (const unsigned live = warp::ballot(active_)) {
-      share_stacks(live);
-      find_leaves(warp::ballot(active_));
+    while (warp::ballot(has_cell()) != 0) {
+      share_stacks();
+      find_leaves(warp::ballot(has_cell()));
       test_leaves();
     }
     if (record_ < count) finish(records, hits);
@@ -151,46 +158,49 @@ class WarpTrace {
     return warp::distance(planes_, rays_.x) / static_cast<uint32_t>(sizeof(WarpRays::Plane));
   }
 
-  /// Idle lanes take over cells that others have on top of their stacks.
-  KD_WARP void share_stacks(unsigned live) {
-    const bool gives = active_ && depth_ > 0;
-    const unsigned givers = warp::ballot(gives);
-    const uint32_t shared = min_of(static_cast<uint32_t>(warp::count(givers)), kLanes - warp::count(live));
-    if (shared == 0) return;
-    const uint32_t rank = warp::count((active_ ? givers : ~live) & warp::before());
-    detail::StackEntry cell{};
-    const float begins = way_.s_resume;
-    if (gives && rank < shared) {
-      --depth_;
-      cell = stack_[depth_];
-      way_.s_resume = cell.s_exit;
-    }
-    const bool takes = !active_ && rank < shared;
-    const uint32_t giver = takes ? warp::nth(givers, rank) : warp::lane();
-    const uint32_t node = warp::of_lane(cell.node, giver), theirs = warp::of_lane(column(), giver);
-    const float s_exit = warp::of_lane(cell.s_exit, giver), s_entry = warp::of_lane(begins, giver);
-    if (!takes) return;
-    take_column(theirs);
-    s_best_ = rounded_up(rays_.nearest[theirs]);
-    way_ = {s_entry * detail::kResumeMargin, s_exit, s_exit};
+  /// Without one, a lane stands at an empty leaf and its stack is empty.
+  KD_WARP bool has_cell() const { return node_.link != Node{}.link; }
+  KD_WARP void leave_cells() {
+    node_ = Node{};
     depth_ = 0;
-    active_ = s_best_ >= way_.s_entry;
-    node_ = load(view_.object.nodes + node);
+  }
+
+  /// Idle lanes take over cells that others have on top of their stacks.
+  KD_WARP void share_stacks() {
+    for (int i = 0; i < kCellsGiven; ++i) {
+      const unsigned idle = warp::ballot(!has_cell()), givers = warp::ballot(has_cell() && depth_ > 0);
+      const uint32_t shared = min_of(warp::count(givers), warp::count(idle));
+      if (shared == 0) return;
+      const uint32_t rank = warp::count((has_cell() ? givers : idle) & warp::before());
+      const bool gives = has_cell() && depth_ > 0 && rank < shared, takes = !has_cell() && rank < shared;
+      detail::StackEntry cell{};
+      const float begins = way_.s_resume;
+      if (gives) {
+        --depth_;
+        cell = stack_[depth_];
+        way_.s_resume = cell.s_exit;
+      }
+      const uint32_t giver = takes ? warp::nth(givers, rank) : warp::lane();
+      const uint32_t node = warp::of_lane(cell.node, giver), theirs = warp::of_lane(column(), giver);
+      const float s_exit = warp::of_lane(cell.s_exit, giver), s_entry = warp::of_lane(begins, giver);
+      if (!takes) continue;
+      take_column(theirs);
+      s_best_ = rounded_up(rays_.nearest[theirs]);
+      way_ = {s_entry * detail::kResumeMargin, s_exit, s_exit};
+      if (s_best_ >= way_.s_entry) node_ = load(view_.object.nodes + node);
+    }
   }
 
   KD_WARP void begin(const RayRecord& r) {
     take_column(warp::lane());
     LatticeRay ray;
-    active_ = lattice_ray<true>(view_.to_lattice, view_.object.bits, r, ray);
+    const bool enters = lattice_ray<true>(view_.to_lattice, view_.object.bits, r, ray);
     rays_.best[warp::lane()] = WarpRays::kNoHit;
-    if (!active_) return;
+    if (!enters) return;
     rays_.keep(warp::lane(), ray);
-    t_base_ = ray.t_base;
-    t_scale_ = ray.t_scale;
     s_best_ = ray.s_max;
     const float s_out = min_of(ray.s_exit, ray.s_max) * detail::kMargin;
     way_ = {ray.s_min, s_out, s_out};
-    depth_ = 0;
     node_ = load(view_.object.nodes);
   }
 
@@ -201,8 +211,8 @@ class WarpTrace {
       return;
     }
     LatticeRay ray;
-    ray.t_base = t_base_;
-    ray.t_scale = t_scale_;
+    ray.t_base = rays_.t_base[warp::lane()];
+    ray.t_scale = rays_.t_scale[warp::lane()];
     const TriangleHit hit = rays_.test(warp::lane()).locate(view_.object.triangle<layout>(triangle));
     hits[record_] = record_of(view_, ray, triangle, hit);
   }
@@ -212,23 +222,21 @@ class WarpTrace {
     aside_ = 0;
     unsigned without;
     do {
-      if (active_) {
-        KD_UNROLL
-        for (int i = 0; i < kStepsAtOnce; ++i) {
-          if (is_leaf(node_)) break;
-          step();
-        }
-        const uint32_t references = reference_count(node_);
-        // An empty leaf is passed even where there is no room for others: its cell may be none at all.
-        if (is_leaf(node_) && (references == 0 || aside_ < kAside)) {
-          if (references != 0) {
-            rays_.leaves[aside_ * kLanes + warp::lane()] = {first_reference(node_), references};
-            ++aside_;
-          }
-          take_from_stack();
-        }
+      KD_UNROLL
+      for (int i = 0; i < kStepsAtOnce; ++i) {
+        if (is_leaf(node_)) break;
+        step();
       }
-      without = warp::ballot(active_ && aside_ == 0);
+      const uint32_t references = reference_count(node_);
+      // An empty leaf is passed even where there is no room for others: its cell may be none at all.
+      if (is_leaf(node_) && (references == 0 || aside_ < kAside)) {
+        if (references != 0) {
+          rays_.leaves[aside_ * kLanes + warp::lane()] = {first_reference(node_), references};
+          ++aside_;
+        }
+        take_from_stack();
+      }
+      without = warp::ballot(has_cell() && aside_ == 0);
     } while (warp::count(without) > kStragglers || without == live);
   }
 
@@ -250,8 +258,10 @@ class WarpTrace {
 
   KD_WARP void take_from_stack() {
     way_.s_entry = way_.s_resume * detail::kResumeMargin;
-    active_ = depth_ != 0 && s_best_ >= way_.s_entry;
-    if (!active_) return;
+    if (depth_ == 0 || s_best_ < way_.s_entry) {
+      leave_cells();
+      return;
+    }
     --depth_;
     way_.s_resume = way_.s_exit = stack_[depth_].s_exit;
     node_ = load(view_.object.nodes + stack_[depth_].node);
@@ -309,10 +319,10 @@ class WarpTrace {
     }
 
     if constexpr (mode == RayMode::any) {
-      if (rays_.hit(column()) != WarpRays::kNoHit) active_ = false;
+      if (rays_.hit(column()) != WarpRays::kNoHit) leave_cells();
     } else {
       s_best_ = rounded_up(rays_.nearest[column()]);
-      if (s_best_ < way_.s_entry * detail::kResumeMargin) active_ = false;
+      if (s_best_ < way_.s_entry * detail::kResumeMargin) leave_cells();
     }
   }
 
@@ -343,14 +353,13 @@ class WarpTrace {
   const TraceView& view_;
   WarpRays& rays_;
   detail::StackEntry* stack_;
+  volatile bool& none_left_;
   uint32_t planes_;  // of this lane's ray, in shared memory
 
-  bool active_ = false;  // the ray has cells to visit
-  uint32_t record_;      // which ray it is; of none if there are no more
-  double t_base_, t_scale_;
-  Node node_;
-  detail::Way way_;
-  float s_best_;
+  uint32_t record_;  // which ray it is; of none if there are no more
+  Node node_{};
+  detail::Way way_;  // without a cell: anything
+  float s_best_;     // the same
   int depth_ = 0;
   uint32_t aside_;  // leaves put aside
 };
