@@ -49,6 +49,10 @@ struct ThroughHierarchy {
     float enter;
   };
 
+#if defined(__CUDACC__)
+#pragma nv_diagnostic push
+#pragma nv_diag_suppress 549  // "stack" used before its value is set: nvcc does not see that only what is open is read
+#endif
   template <class Visit>
   KD_HD static void for_each(const SceneView& scene, const Ray& ray, const double& t_limit, const Visit& visit) {
     if (scene.instance_count == 0) return;
@@ -86,6 +90,9 @@ struct ThroughHierarchy {
       if (!resume()) return;
     }
   }
+#if defined(__CUDACC__)
+#pragma nv_diagnostic pop
+#endif
 };
 
 /// For scenes of one instance, which need no hierarchy; nor, on a GPU, the registers for one.
