@@ -18,8 +18,7 @@ struct alignas(16) RayRecord {
 };
 static_assert(sizeof(RayRecord) == 32);
 
-/// A hit as HITS.bin has it: 16 bytes. A miss has primitive -1 and the ray's t_max; with RayMode::any the hit is
-/// whichever was found first.
+/// A hit as HITS.bin has it: 16 bytes. A miss has primitive -1 and the ray's t_max; with RayMode::any it is some hit.
 struct alignas(16) HitRecord {
   float t;
   int32_t primitive;  // the triangle's number in the source mesh

@@ -63,7 +63,8 @@ TEST_CASE("scattered rays on CUDA meet what they meet on the CPU") {
       render::TraceJob job;
       job.rays = std::span(all).first(count);
       job.warm_ups = 0;
-      job.repeats = 2;  // the second takes its rays anew
+      job.packets = false;  // each ray alone
+      job.repeats = 2;      // the second takes its rays anew
       for (const RayMode mode : {RayMode::closest, RayMode::any}) {
         job.mode = mode;
         job.scattered = false;

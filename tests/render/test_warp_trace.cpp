@@ -26,6 +26,24 @@ std::vector<RayRecord> rays_at(const Traced& traced, size_t count, uint64_t seed
   return rays;
 }
 
+/// The same tree with a leaf of its own for each empty child, as a file may have it.
+std::vector<Node> with_empty_leaves(const std::vector<Node>& nodes) {
+  std::vector<Node> out(2);
+  const auto copy = [&](const auto& self, uint32_t from, uint32_t to) -> void {
+    const Node node = nodes[from];
+    if (is_leaf(node)) {
+      out[to] = node;
+      return;
+    }
+    const auto first = static_cast<uint32_t>(out.size());
+    out.resize(first + 2);
+    out[to] = make_inner(split_axis(node), static_cast<uint32_t>(split_plane(node)), first);
+    for (uint32_t side = 0; side < 2; ++side) self(self, child_of(node, side), first + side);
+  };
+  copy(copy, 0, 0);
+  return out;
+}
+
 /// How many rays fare otherwise than alone, traced by a block of so many warps; adds their hits to `met`.
 template <RayMode mode>
 size_t differing(const Traced& traced, std::span<const RayRecord> rays, uint32_t warps, size_t& met) {
@@ -62,7 +80,7 @@ TEST_CASE("warp trace: rays meet what they meet alone") {
          {soup_shape(bits, 40, Soup::needles, 1), soup_shape(bits, 700, Soup::mixed, 2),
           soup_shape(bits, 2000, Soup::small, 3), rooms_shape(bits, 6, 4), sphere_shape(bits, 3), fan_shape(bits, 100),
           stacked_boxes_shape(bits, 5), box_shape({0, 0, 0}, {top, top, top})}) {
-      const Traced traced(shape, bits);
+      Traced traced(shape, bits);
       // Fewer than lanes, as many, a few more, which share stacks; many, of which lanes take others.
       constexpr struct {
         size_t count;
@@ -74,6 +92,11 @@ TEST_CASE("warp trace: rays meet what they meet alone") {
         CHECK(differing<RayMode::any>(traced, some, warps, met) == 0);
         rays += 2 * count;
       }
+      traced.tree.nodes = with_empty_leaves(traced.tree.nodes);
+      const std::vector<RayRecord> some = rays_at(traced, 300, static_cast<uint64_t>(bits));
+      CHECK(differing<RayMode::closest>(traced, some, 1, met) == 0);
+      CHECK(differing<RayMode::any>(traced, some, 1, met) == 0);
+      rays += 2 * some.size();
     }
   }
   CHECK(met > rays / 2);

@@ -91,7 +91,8 @@ Result<TraceOutcome> cuda_trace(const nkd::ObjectFile& object, const TraceJob& j
 
   const TraceView view{pieces.view(lattice.bits), invert(lattice.frame()), source_primitives};
   const auto count = static_cast<uint32_t>(job.rays.size());
-  const bool by_warps = job.scattered && job.test == TriangleTest::exact;
+  const bool by_warps =
+      job.scattered && job.test == TriangleTest::exact && geometry.triangle_count() <= WarpRays::kNoHit;
   unsigned blocks_at_once = 0;
   if (by_warps) {
     cudaError_t status = cudaSuccess;

@@ -1,4 +1,5 @@
-// What the lanes of a warp do together. All 32 take part in each of these, except where a set of lanes is named.
+// What the lanes of a warp do together. Where it is not said otherwise, all 32 take part in it; only sync() orders what
+// they write and read.
 // Without nvcc they are declared and no more: a test has lanes of its own (tests/render/warp_emulation.h), so that what
 // warps do is tested where there is no GPU.
 #pragma once
@@ -22,6 +23,7 @@ constexpr unsigned kAll = 0xffffffffu;
 
 #if defined(__CUDACC__)
 
+/// Which lane this is.
 KD_WARP uint32_t lane() { return threadIdx.x % kLanes; }
 /// What lanes wrote to memory before, all of them see after.
 KD_WARP void sync() { __syncwarp(); }
@@ -44,10 +46,11 @@ KD_WARP uint32_t of_lane_below(uint32_t value, uint32_t distance) { return __shf
 /// For the lanes of a set alone: those of them that have the same value.
 KD_WARP unsigned same_among(unsigned lanes, uint32_t value) { return __match_any_sync(lanes, value); }
 
-/// Adds to a counter that all warps share; its value before.
+/// For a single lane: adds to a counter that all warps share; its value before.
 KD_WARP uint32_t add(uint32_t* counter, uint32_t value) { return atomicAdd(counter, value); }
 
-/// An address in shared memory, kept in one register: left to itself the compiler computes it anew for each use.
+/// For each lane alone, as what follows: an address in shared memory, kept in one register: left to itself the compiler
+/// computes it anew for each use.
 KD_WARP uint32_t shared_address(const void* at) {
   auto address = static_cast<uint32_t>(__cvta_generic_to_shared(at));
   asm volatile("" : "+r"(address));
@@ -62,6 +65,7 @@ KD_WARP void load_shared(uint32_t address, float& a, float& b) {
   asm volatile("ld.shared.v2.f32 {%0, %1}, [%2];" : "=f"(a), "=f"(b) : "r"(address));
 }
 
+/// Of a set of lanes, for each lane alone: how many they are.
 KD_WARP uint32_t count(unsigned lanes) { return static_cast<uint32_t>(__popc(lanes)); }
 /// The lane in which `n` lanes of a set come before.
 KD_WARP uint32_t nth(unsigned lanes, uint32_t n) { return __fns(lanes, 0, static_cast<int>(n) + 1); }

@@ -12,7 +12,7 @@
 //     cannot reject are queued, and decided in double by as many lanes as possible;
 //   - when no rays are left to take, idle lanes take over cells from the stacks of those that still have some, so that
 //     several lanes work for one ray.
-// So what a ray is tested with is in shared memory, 88 bytes, and a lane's registers hold only its way down the tree.
+// So what a ray is tested with is in shared memory, 64 bytes, and a lane's registers hold only its way down the tree.
 // Some cells are visited in vain, and in another order. That changes no hit: the answer depends on no order of visits
 // (core/traversal.h).
 #pragma once
@@ -34,9 +34,10 @@ constexpr int kStragglers = 8;            // lanes without a leaf that the other
 constexpr uint32_t kEnoughIdle = 12;      // lanes that begin rays together
 constexpr int kCellsGiven = 4;            // at most, by a lane at once
 
-/// What the rays of a warp are tested with, a column a ray. The three rows of planes lie equally far apart, so that a
-/// node's axis finds its row by one multiplication. All 8 blocks take 97 KiB of a multiprocessor's, so that 100 KiB of
-/// it are set aside and the L1 cache has the rest: with 132 bounce rays are 1 % slower, with 164 by 6.
+/// What the rays of a warp are tested with, a column a ray, and what its lanes hand each other. The three rows of
+/// planes lie equally far apart, so that a node's axis finds its row by one multiplication. Eight blocks take 97 KiB of
+/// a multiprocessor's memory, so that 100 KiB of it are shared memory and the rest is L1 cache: with 132 bounce rays
+/// are 1 % slower, with 164 by 6.
 struct WarpRays {
   struct Plane {
     float origin, inverse;  // of the ray, along an axis
@@ -68,10 +69,9 @@ struct WarpRays {
   Undecided queue[kLanes];
   double t_base[kLanes], t_scale[kLanes];  // as in LatticeRay
 
-  // A file of 4 GiB, the largest there is, has fewer triangles than 2^29: each takes more than 8 bytes of it.
   static constexpr int kSignBit = 29, kAxisBit = 30;
-  static constexpr uint32_t kNoHit = (1u << kSignBit) - 1;
-  static constexpr uint32_t kCertain = 1u << 31;  // in Undecided::ray
+  static constexpr uint32_t kNoHit = (1u << kSignBit) - 1;  // objects have fewer triangles
+  static constexpr uint32_t kCertain = 1u << 31;            // in Undecided::ray
 
   KD_WARP void keep(uint32_t column, const LatticeRay& ray) {
     const auto shear = detail::shear_along(ray, ray.axis);
@@ -158,10 +158,10 @@ class WarpTrace {
     return warp::distance(planes_, rays_.x) / static_cast<uint32_t>(sizeof(WarpRays::Plane));
   }
 
-  /// Without one, a lane stands at an empty leaf and its stack is empty.
-  KD_WARP bool has_cell() const { return node_.link != Node{}.link; }
+  /// Without one, a lane stands at a leaf that no tree has, and its stack is empty.
+  KD_WARP bool has_cell() const { return node_.link != kNowhere.link; }
   KD_WARP void leave_cells() {
-    node_ = Node{};
+    node_ = kNowhere;
     depth_ = 0;
   }
 
@@ -228,7 +228,8 @@ class WarpTrace {
         step();
       }
       const uint32_t references = reference_count(node_);
-      // An empty leaf is passed even where there is no room for others: its cell may be none at all.
+      // An empty leaf is passed even where there is no room for others. It may stand for no cell, but for a ray that
+      // meets neither child; and then its entry, which test_leaves asks for, may lie behind its exit.
       if (is_leaf(node_) && (references == 0 || aside_ < kAside)) {
         if (references != 0) {
           rays_.leaves[aside_ * kLanes + warp::lane()] = {first_reference(node_), references};
@@ -350,14 +351,16 @@ class WarpTrace {
     }
   }
 
+  static constexpr Node kNowhere{0, 5};  // empty, and not an empty leaf of a tree, whose link is 4
+
   const TraceView& view_;
   WarpRays& rays_;
   detail::StackEntry* stack_;
   volatile bool& none_left_;
   uint32_t planes_;  // of this lane's ray, in shared memory
 
-  uint32_t record_;  // which ray it is; of none if there are no more
-  Node node_{};
+  uint32_t record_;  // which ray its column has; none if there are no more
+  Node node_ = kNowhere;
   detail::Way way_;  // without a cell: anything
   float s_best_;     // the same
   int depth_ = 0;
