@@ -3,7 +3,7 @@
 
 #include <doctest/doctest.h>
 
-#include "../core/shapes.h"
+#include "../render/ray_records.h"
 #include "support/workshop.h"
 
 using namespace kd;
@@ -20,22 +20,6 @@ Shape shape_of(const nkd::Geometry& geometry) {
     shape.triangles.push_back({c.x, c.y, c.z});
   }
   return shape;
-}
-
-/// Rays in no order, of the kinds that lose hits; an eighth of them end on their way.
-std::vector<render::RayRecord> scattered_rays(const nkd::ObjectFile& object, size_t count) {
-  const Lattice& lattice = object.summary().lattice;
-  const Frame frame = lattice.frame();
-  const Shape shape = shape_of(object.geometry());
-  Random random(7);
-  std::vector<render::RayRecord> rays;
-  for (size_t i = 0; i < count; ++i) {
-    const PlainRay ray = adversarial_ray(shape, lattice.bits, random);
-    const Vec3f o = vec_cast<float>(frame.apply_point(ray.origin)),
-                d = vec_cast<float>(frame.apply_vector(ray.direction));
-    rays.push_back({o.x, o.y, o.z, 0, d.x, d.y, d.z, random.chance(0.125) ? 0.9f : 1e30f});
-  }
-  return rays;
 }
 
 }  // namespace
@@ -58,7 +42,8 @@ TEST_CASE("scattered rays on CUDA meet what they meet on the CPU") {
     CAPTURE(name);
     const auto object = nkd::ObjectFile::open(workshop.compile(*mesh));
     REQUIRE(object);
-    const std::vector<render::RayRecord> all = scattered_rays(*object, 200000);
+    const std::vector<render::RayRecord> all =
+        adversarial_records(shape_of(object->geometry()), object->summary().lattice, 200000, 7);
     for (const size_t count : {size_t{1}, size_t{33}, all.size()}) {
       render::TraceJob job;
       job.rays = std::span(all).first(count);

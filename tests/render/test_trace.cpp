@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "ray_records.h"
 #include "render/cpu_backend.h"
 #include "render/expand.h"
 #include "worlds.h"
@@ -54,14 +55,7 @@ TEST_CASE("trace: hits are those of looking at every triangle, numbered as in th
     const auto file = nkd::ObjectFile::open(c.write(folder.file("a.nkd")));
     REQUIRE(file);
     const std::vector<TriangleVertices> triangles = expanded(shape);
-    Random random(2);
-    std::vector<render::RayRecord> rays;
-    for (int i = 0; i < 3000; ++i) {
-      const PlainRay r = adversarial_ray(shape, bits, random);
-      const auto f = [](double v) { return static_cast<float>(v); };
-      rays.push_back({f(r.origin.x), f(r.origin.y), f(r.origin.z), 0, f(r.direction.x), f(r.direction.y),
-                      f(r.direction.z), 1e30f});
-    }
+    const std::vector<render::RayRecord> rays = adversarial_records(shape, cube_lattice(bits), 3000, 2);
     render::TraceJob job{rays, RayMode::closest, 1, 2, true};
     const auto closest = render::cpu_trace(*file, job, 0);
     job.mode = RayMode::any;

@@ -1,9 +1,10 @@
 // Rays whose work a warp's lanes share, without a GPU: they meet what each of them meets alone, to the bit.
 #include <cstring>
+#include <memory>
 
 #include <doctest/doctest.h>
 
-#include "../core/shapes.h"
+#include "ray_records.h"
 #include "warp_emulation.h"
 // After what it is to call.
 #include "render/cuda/warp_trace.h"
@@ -13,18 +14,6 @@ using namespace kd::test;
 using namespace kd::render;
 
 namespace {
-
-std::vector<RayRecord> rays_at(const Traced& traced, size_t count, uint64_t seed) {
-  Random random(seed);
-  const auto f = [](double v) { return static_cast<float>(v); };
-  std::vector<RayRecord> rays;
-  for (size_t i = 0; i < count; ++i) {
-    const PlainRay r = adversarial_ray(traced.shape, traced.lattice.bits, random);
-    rays.push_back({f(r.origin.x), f(r.origin.y), f(r.origin.z), 0, f(r.direction.x), f(r.direction.y),
-                    f(r.direction.z), random.chance(0.125) ? 0.9f : 1e30f});
-  }
-  return rays;
-}
 
 /// The same tree with a leaf of its own for each empty child, as a file may have it.
 std::vector<Node> with_empty_leaves(const std::vector<Node>& nodes) {
@@ -87,13 +76,14 @@ TEST_CASE("warp trace: rays meet what they meet alone") {
         uint32_t warps;
       } kRays[] = {{1, 1}, {5, 1}, {32, 1}, {33, 1}, {77, 1}, {400, 1}, {70, 2}, {200, 3}};
       for (const auto& [count, warps] : kRays) {
-        const std::vector<RayRecord> some = rays_at(traced, count, 100 * static_cast<uint64_t>(bits) + count);
+        const std::vector<RayRecord> some =
+            adversarial_records(shape, traced.lattice, count, 100 * static_cast<uint64_t>(bits) + count);
         CHECK(differing<RayMode::closest>(traced, some, warps, met) == 0);
         CHECK(differing<RayMode::any>(traced, some, warps, met) == 0);
         rays += 2 * count;
       }
       traced.tree.nodes = with_empty_leaves(traced.tree.nodes);
-      const std::vector<RayRecord> some = rays_at(traced, 300, static_cast<uint64_t>(bits));
+      const std::vector<RayRecord> some = adversarial_records(shape, traced.lattice, 300, static_cast<uint64_t>(bits));
       CHECK(differing<RayMode::closest>(traced, some, 1, met) == 0);
       CHECK(differing<RayMode::any>(traced, some, 1, met) == 0);
       rays += 2 * some.size();

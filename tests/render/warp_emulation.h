@@ -7,7 +7,6 @@
 
 #include <bit>
 #include <functional>
-#include <memory>
 #include <stdexcept>
 #include <vector>
 
